@@ -5,7 +5,7 @@
     tools/sample_prose.py --judge DIR RATING...         prints the share that each reader would rewrite
 
 Half of the sentences are ours, evenly from README, manual, method, architecture, contributing, changelog, help and
-explain, messages, pages, Python docstrings and public headers. The others are SQLite's, from the Debian package
+explain, schema, messages, pages, Python docstrings and public headers. The others are SQLite's, from the Debian package
 sqlite3-doc, which is fetched into build/prose/control. The draw depends on the seed and the texts alone. A rating is
 a line "number TAB ok|rewrite TAB why". Ours pass with at most 8 % to rewrite, or no more than the control."""
 import argparse
@@ -63,6 +63,13 @@ def of_messages(path):
             yield from sentences(part[:1].upper() + part[1:] + ("" if part.endswith((".", "!", "?")) else "."))
 
 
+def of_keys(path):
+    """Yields the meanings of the keys in a table of a case file, as `hifdm schema` prints them, with a full stop."""
+    code = strings.COMMENT.sub("", path.read_text(encoding="utf-8"))
+    for group in re.finditer(r'"(?:[^"\\\n]|\\.)*"(?:\s*(?:\\\n)?\s*"(?:[^"\\\n]|\\.)*")*', code):
+        yield from sentences("".join(strings.LITERAL.findall(group.group())).rstrip(".") + ".")
+
+
 def ours():
     """Returns {kind: [(source, sentence)]}."""
     def markdown(*patterns):
@@ -76,7 +83,9 @@ def ours():
              "changelog": markdown("CHANGELOG.md"), "explain": [
                  (p.relative_to(TOP), s) for p in [TOP / "src/manual/glossary.md"]
                  for s in of_markdown(p.read_text(encoding="utf-8"))], "messages": [
-                 (p.relative_to(TOP), s) for p in sorted(TOP.glob("src/**/*.c")) for s in of_messages(p)]}
+                 (p.relative_to(TOP), s) for p in sorted(TOP.glob("src/**/*.c")) for s in of_messages(p)], "schema": [
+                 (p.relative_to(TOP), s) for p in [TOP / "src/case/config_table.c", TOP / "include/hifdm/generate.h",
+                                                   TOP / "include/hifdm/truss.h"] for s in of_keys(p)]}
     for name, _, lines in strings.texts():
         kind = {"include": "headers", "tools": "docstrings"}.get(name.parts[0])
         if name.suffix in (".html", ".js"):

@@ -30,9 +30,9 @@ HF_API_BEGIN
 #define HF_GENERATORS(X)                                                                                               \
     X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A net over a parabolic cylinder.")                           \
     X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS,                                                                   \
-      "A net over a paraboloid with a round aperture, alone or tied to a rear net.")
+      "A net over a paraboloid with a round aperture, with or without a rear net.")
 /* Help of the section scene. The help states the number of generators plus one for import. */
-#define HF_GENERATORS_HELP "The net: exactly one of the three sections below."
+#define HF_GENERATORS_HELP "The net. A case has exactly one of the three sections below."
 
 #define HF_GENERATE_FAULT_SIZE 256 /* size in bytes of the reason why a net cannot be made */
 
@@ -54,15 +54,16 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
  * hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
-      "above 0: a rear net, whose rim lies so far below that of the front net, and a tie to each of its free nodes")   \
+      "Distance of the rim of a rear net below the rim of the front net. A tie then joins each free node of the "      \
+      "front net to the rear net. 0: no rear net")                                                                     \
     X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
-      "focal length of the rear net, which bulges towards the front; 0: that of the front net")                        \
+      "Focal length of the rear net, which is curved towards the front net. 0: the focal length of the front net")     \
     X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"),                                   \
-      "ties run along z, or along the normal of the front net")                                                        \
+      "Direction of the ties: z, or the normal of the front net")                                                      \
     X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", ((const char *const[]){HF_LAW_LIST(HF_LAW_WORD) NULL}),     \
-      "law of the ties; the nets have law tension, their boundary cables law length")                                  \
+      "Law of the ties. The nets have law tension, and their boundary cables law length")                              \
     X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
-      "tension at the target positions, of ties of the laws tension, force_density and elastic")
+      "Tension of the ties at the target positions, for the laws tension, force_density and elastic")
 
 /* ---- parabolic_cylinder ---- */
 
@@ -100,33 +101,36 @@ typedef struct {
 /* Keys of the section, as rows X(section, member, type, minimum, maximum, default, unit, words, help) of hf_field_table
  * (config.h). */
 #define HF_CYLINDER_KEYS(X, section)                                                                                   \
-    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "aperture along the directrix (x)")   \
-    X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "length along the generatrix (y)")      \
-    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL, "focal length of z = x^2/(4f)")   \
-    X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL, "modules along the directrix and the generatrix")  \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Aperture along the directrix (x)")   \
+    X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Length along the generatrix (y)")      \
+    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL, "Focal length of z = x^2/(4f)")   \
+    X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                                    \
+      "Number of modules along the directrix and the generatrix")                                                      \
     X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                           \
-      "net cells per module, along the directrix and the generatrix")                                                  \
+      "Number of net cells per module, along the directrix and the generatrix")                                        \
     X(section, pitches_x_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "projected widths of the modules along x, from the left, which add up to aperture_m; without them modules are "  \
-      "alike in arc length or projection, as spacing says; with them only the cells within each are")                  \
+      "Projected widths of the modules along x, from the left; their sum is aperture_m. Within each module the "       \
+      "cells are equal, as spacing says. Without this key, all modules are equal")                                     \
     X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "lengths of the modules along y, which add up to length_m; without them all are alike")                          \
+      "Lengths of the modules along y; their sum is length_m. Without this key, all modules are equal")                \
     X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", HF_WORDS("quad", "triangle", "diagonal", "alternating"),      \
-      "quad: cables along x and y; triangle: and one diagonal per cell, all in one direction; alternating: and one "   \
-      "diagonal per cell, in alternating directions; diagonal: the quad net turned by 45 degrees, four half "          \
-      "diagonals per cell that meet in a node at its middle, and of the cables along x and y the boundary ones. All "  \
-      "but quad leave out cables between two supports")                                                                \
+      "quad: cables along x and y; triangle: quad and one diagonal per cell, all in the same direction; "              \
+      "alternating: quad and one diagonal per cell, in alternating directions; diagonal: four half diagonals per "     \
+      "cell that meet in a node at its middle, and the boundary cables along x and y. All patterns except quad "       \
+      "omit cables between two supports")                                                                              \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
-      "nodes along the directrix: equal arc length, or equal projected (x) spacing")                                   \
+      "Spacing of the nodes along the directrix: equal arc length, or equal projected (x) spacing")                    \
     X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", HF_WORDS("outer_edge", "module_edges"),                \
-      "which cables are boundary cables (law length); the others are inner (law tension)")                             \
+      "Which cables are boundary cables (law length). The other cables are inner cables (law tension)")                \
     X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL,                                                        \
-      "inward sag of a free outer edge between supports, relative to their distance; a parabola")                      \
+      "Inward sag of a free outer edge between two supports, as a fraction of their distance. The edge is a "          \
+      "parabola")                                                                                                      \
     X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", HF_WORDS("module_corners", "ribs", "perimeter"),   \
-      "fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")                      \
+      "Fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")                      \
     X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
-      "above 0: the fixed nodes of the outer edge are free and hang on ties (boundary cables, law length); the "       \
-      "supports stand so far outside of them along x or y, at corners of the net along both")                          \
+      "Length of ties (boundary cables, law length) that connect the nodes of the outer edge to supports outside "     \
+      "of them, along x or y, and along both at the corners of the net. 0: the nodes of the outer edge are "           \
+      "themselves the supports")                                                                                       \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the parabolic cylinder.
@@ -172,18 +176,19 @@ typedef struct {
 
 /* Keys of the section, in the form of HF_CYLINDER_KEYS. */
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
-    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "diameter of the aperture")           \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Diameter of the aperture")           \
     X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
-      "focal length of z = (x^2 + y^2)/(4f)")                                                                          \
+      "Focal length of z = (x^2 + y^2)/(4f)")                                                                          \
     X(section, offset_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                                      \
-      "distance of the middle of the aperture from the axis, along x; 0: fed from the centre")                         \
-    X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL, "cells from the middle of the aperture to its rim")       \
+      "Distance of the middle of the aperture from the axis, along x. 0: a centre-fed reflector")                      \
+    X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL,                                                           \
+      "Number of cells from the middle of the aperture to its rim")                                                    \
     X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", HF_WORDS("triangle", "quad"),                                \
-      "triangle: three families of cables, in rings of 6, 12, 18, ... nodes, the last of which are supports on the "   \
-      "rim; quad: cables along x and y, which end at supports on the rim")                                             \
+      "triangle: three families of cables, with rings of 6, 12, 18, ... nodes. The nodes of the last ring are "        \
+      "supports on the rim; quad: cables along x and y that end at supports on the rim")                               \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \
-      "nodes along a radius of the aperture: equal projected spacing, or equal arc length on a paraboloid about its "  \
-      "middle")                                                                                                        \
+      "Spacing of the nodes along a radius of the aperture: equal projected spacing, or equal arc length on a "        \
+      "paraboloid around the middle of the aperture")                                                                  \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the paraboloid.

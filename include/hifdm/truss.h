@@ -54,7 +54,7 @@ extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", "abug", "o
     X(J_m4, "m4", NAN, "torsion constant")                                                                             \
     X(Asy_m2, "m2", INFINITY, "shear area along local y; infinite: no shear deformation")                              \
     X(Asz_m2, "m2", INFINITY, "shear area along local z; infinite: no shear deformation")                              \
-    X(roll_rad, "rad", 0, "turn of the local axes y and z about x")                                                    \
+    X(roll_rad, "rad", 0, "rotation of the local axes y and z about x")                                                \
     X(density_kg_per_m3, "kg/m3", 0, "density")                                                                        \
     X(expansion_per_K, "1/K", 0, "coefficient of thermal expansion")
 
@@ -145,51 +145,50 @@ typedef struct {
  * hf_field_table (config.h). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
     X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
-      "distance of the rear chords from the front chords, along the normal of the surface")                            \
+      "Distance of the rear chords from the front chords, along the normal of the surface")                            \
     X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL,                                                       \
-      "counted from both edges, every so many module borders along y carry main units (mbug), the others "             \
-      "assistant ones")                                                                                                \
+      "Interval of the module borders along y with main units (mbug), counted from both edges. The other borders "     \
+      "have assistant units (abug)")                                                                                   \
     X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL, "Young's modulus of the tubes")        \
     X(section, G_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,                                          \
-      "shear modulus of the tubes; E/(2(1+nu)) for isotropic material")                                                \
-    X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL, "density of the tubes")              \
-    X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL, "thermal expansion of the tubes")            \
-    X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL, "mass of the hinges at each node")             \
+      "Shear modulus of the tubes; E/(2(1+nu)) for isotropic material")                                                \
+    X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL, "Density of the tubes")              \
+    X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL, "Thermal expansion of the tubes")            \
+    X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL, "Mass of the hinges at each node")             \
     X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", HF_WORDS("euler_bernoulli", "timoshenko"),          \
-      "beams without shear deformation, or with a shear area of half the cross-section (thin round tube)")             \
+      "Beam theory: without shear deformation, or with a shear area of half the cross-section (thin round tube)")      \
     X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word,                                                \
-      "members clamped to their nodes, or carrying axial force alone")                                                 \
+      "Joints of the members: rigid (clamped to their nodes), or pinned (axial force only)")                           \
     X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", HF_WORDS("central_module", "central_module_rear"), \
-      "nodes held by the spacecraft: all corners of the central module, or its rear ones")                             \
+      "Nodes that the spacecraft holds: all corners of the central module, or only its rear corners")                  \
     X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", HF_WORDS("all", "translations"),                          \
-      "what is held there: displacements and rotations, or displacements only")
+      "Degrees of freedom held at these nodes: displacements and rotations, or only displacements")
 
 #define HF_TRUSS_UNIT_KEYS(X, section, diameter, panel_number)                                                         \
-    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "outer diameter of its tubes")     \
-    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")           \
-    X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "panels along one module")                       \
-    X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "diagonals of each panel")
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "Outer diameter of the tubes")     \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "Wall thickness of the tubes")           \
+    X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "Number of panels along one module")             \
+    X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "Diagonals of each panel")
 
 /* Keys of the section truss.ring and of each of its tubes. The macro argument is the default of the diameter. */
 #define HF_RING_KEYS(X, section)                                                                                       \
     X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
-      "distance of the rear ring below the front ring, along z; default: rear_distance_m of the net")                  \
+      "Distance of the rear ring below the front ring, along z. Default: rear_distance_m of the net")                  \
     X(section, cells_per_bay, HF_FIELD_INT, 1, 6000, "1", "", NULL,                                                    \
-      "cells of the net along the rim in a bay of the ring, which has a vertical at each end; the longerons bend at "  \
-      "the supports of the net between them")                                                                          \
+      "Number of cells of the net along the rim in one bay of the ring. A bay has a vertical at each end, and its "    \
+      "longerons bend at the supports of the net between the verticals")                                               \
     X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                          \
-      "diagonals of each bay; single ones fall and rise by turns")                                                     \
+      "Diagonals of each bay. Single diagonals alternate in direction")                                                \
     X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", HF_WORDS("bay", "vertical", "three_verticals"),                   \
-      "joints held by the spacecraft or the ground: the four of a bay, the two of a vertical, or the rear ones of "    \
-      "three verticals a third of the way round apart")                                                                \
+      "Joints that the spacecraft or the ground holds: the four joints of a bay, the two joints of a vertical, or "    \
+      "the rear joints of three verticals at 120 degrees")                                                             \
     X(section, held_at_deg, HF_FIELD_DOUBLE, 0, 360, "180", "deg", NULL,                                               \
-      "where the bay or the (first) vertical is, to the nearest one: the angle about the middle of the aperture, "     \
-      "from "                                                                                                          \
-      "x towards y; 180 is the side of the axis of an offset reflector")
+      "Angle of the held bay or the (first) held vertical about the middle of the aperture, from x towards y. "        \
+      "hifdm uses the nearest bay or vertical. 180 is the side of the axis of an offset reflector")
 
 #define HF_TUBE_KEYS(X, section, diameter)                                                                             \
-    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "outer diameter of its tubes")     \
-    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "wall thickness of its tubes")
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "Outer diameter of the tubes")     \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "Wall thickness of the tubes")
 
 /* Makes the truss of basic sub-rings over the modules of the net. The front nodes of the truss are the module corners
  * on the cylinder. At the outer edge of a net with edge ties, the front nodes of the truss are the supports of these

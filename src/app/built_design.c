@@ -63,7 +63,7 @@ static hf_status compare(const hf_options *o, const hf_problem *p, const hf_expo
     HF_TRY(status);
     if (!what) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: is the result of another net than that of %s; they differ in %s. Use the case of this result",
+                    "%s: this result belongs to another net than %s; they differ in %s. Use the case of this result",
                     o->result, o->file, what);
 }
 
@@ -120,10 +120,10 @@ hf_status hf_built_design_check(const hf_options *o, const hf_case *c, hf_messag
     if (o->result || is_form || (!o->stage && !c->has_optimize)) return HF_OK;
     if (o->stage)
         return hf_error(messages, HF_BAD_USAGE,
-                        "--stage needs --result FILE, a result of this case, unless it is form");
+                        "--stage needs --result FILE with a result of this case, except --stage form");
     return hf_error(messages, HF_BAD_USAGE,
-                    "%s: has a section optimize: use --result FILE with the result by which the net was cut (hifdm run "
-                    "writes it), or --stage form if it was cut by the form-finding",
+                    "%s: has a section optimize. Use --result FILE with the result from which the net was cut (hifdm "
+                    "run writes it), or --stage form if the net was cut from the form-finding",
                     o->file);
 }
 

@@ -432,8 +432,8 @@ static hf_status check_outputs(const job *j, const hf_options *o, hf_messages *m
 {
     if (o->report && !o->result)
         return hf_error(messages, HF_BAD_USAGE,
-                        "--report %s needs --result FILE, the result of this case (hifdm run %s writes it)", o->report,
-                        o->file);
+                        "--report %s needs --result FILE with the result of this case (hifdm run %s writes it)",
+                        o->report, o->file);
     if (o->output && o->report && !strcmp(o->output, o->report))
         return hf_error(messages, HF_BAD_USAGE, "-o and --report both name %s: use different names", o->output);
     HF_TRY(check_output(j, o, o->output, messages));
@@ -477,11 +477,12 @@ static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_adjust = {
     .name = "adjust",
     .argument = "CASE",
-    .help = "which turnbuckles to adjust, given measured positions of the as-built net",
+    .help = "find the turnbuckles to adjust from measured positions of the as-built net",
     .about = "hifdm estimates the errors of the cut lengths from the measured positions of nodes and the section "
              "tolerance. Then it selects the fewest adjustments of the cables in adjust.set that reduce the figure. "
-             "They are multiples of a step and stay within a range. The table lists them in the order in which you "
-             "make them, with the tension of the cable before and after each, and the figure predicted after it.",
+             "Each adjustment is a multiple of adjust.step_m within adjust.range_m. The table lists the adjustments "
+             "in the order in which you make them. Each row gives the tension of the cable before and after the "
+             "adjustment, and the figure predicted after it.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
                 "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
                 "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=target_positions\n"

@@ -386,11 +386,11 @@ static hf_status command_check(const hf_options *o, FILE *file, hf_messages *mes
 const hf_command hf_cmd_check = {
     .name = "check",
     .argument = "CASE",
-    .help = "validate; print what will run, what is skipped, sizes, memory and expected time; of a study its points",
-    .about = "The form-finding is tried, the optimisation is not, and nothing is written. All errors of the case are "
-             "told in one go, with file, line and column.\n"
-             "Of a study: axes, the number of points, the first and the last of them, what is done already; the nets "
-             "of the points are made, and the first point is checked as a case is.",
+    .help = "check a case or a study; print what will run, what is skipped, sizes, memory and time",
+    .about = "hifdm check runs the form-finding but not the optimisation, and it writes no files. It reports all "
+             "errors of the case together, each with file, line and column.\nFor a study, hifdm check prints the "
+             "axes, the number of points, the first and the last point, and the points that are already done. It "
+             "builds the nets of all points and checks the first point like a case.",
     .examples = "hifdm check case.yaml --threads 64\n"
                 "hifdm check study.yaml",
     .uses_threads = true,

@@ -122,7 +122,7 @@ static hf_status check_study(const hf_check_request *request, const hf_study *s,
     print_left(s, count, check->at_most_s, request->threads, f);
     if (status != HF_OK || t.n_fault == 0) return status;
     return hf_error(messages, HF_POINTS_FAILED,
-                    "%s: sweep: %d of the %d points that were tried cannot be run; a sweep counts them as failed and "
+                    "%s: sweep: %d of the %d points that were tried cannot be run. A sweep counts them as failed and "
                     "runs the others",
                     s->path, t.n_fault, t.n_tried);
 }
@@ -131,7 +131,9 @@ hf_status hf_cmd_check_study(const hf_check_request *request, hf_check *check, F
 {
     static hf_study study;
     if (request->n_set)
-        return hf_error(messages, HF_BAD_USAGE, "%s: is a study, which takes no --set: change its base case or an axis",
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: --set does not work with a study; change its base case or an "
+                        "axis",
                         request->path);
     hf_status status = hf_study_read(request->path, &study, messages);
     if (status == HF_OK) status = check_study(request, &study, check, f, messages);

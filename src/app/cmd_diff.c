@@ -23,9 +23,10 @@ static hf_status command_diff(const hf_options *o, FILE *file, hf_messages *mess
 const hf_command hf_cmd_diff = {
     .name = "diff",
     .argument = "A B",
-    .help = "compare two result files, data set by data set; times and provenance (attributes) do not count",
-    .about = "Two runs of the same case and seed are equal to the bit, at any number of threads, with or without "
-             "interruptions. Exit status 1 and the first differences when the files differ.",
+    .help = "compare the data sets of two result files, without times and provenance",
+    .about = "Two runs of the same case with the same seed give bit-identical results, with any number of threads and "
+             "with or without interruptions. If the files differ, hifdm diff prints the first differences and exits "
+             "with status 1.",
     .examples = "hifdm diff monday.h5 tuesday.h5\n"
                 "hifdm diff mine.h5 yours.h5 --rtol 1e-9",
     .reads_results = true,

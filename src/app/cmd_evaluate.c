@@ -93,7 +93,8 @@ static hf_status name_columns(job *j, hf_messages *messages)
             if (m->variable_cable[i] >= 0 && !strcmp(j->name[i], j->name[k]))
                 return hf_error(
                     messages, HF_BAD_CASE,
-                    "optimize.variables: cable '%s' has the name of a design variable of a support; rename it",
+                    "optimize.variables: the name of cable '%s' is also the name of a design variable of a support; "
+                    "rename the cable",
                     j->name[i]);
     }
     return HF_OK;
@@ -419,12 +420,12 @@ static hf_status command_evaluate(const hf_options *options, FILE *file, hf_mess
 const hf_command hf_cmd_evaluate = {
     .name = "evaluate",
     .argument = "CASE",
-    .help = "evaluate a table of designs, to a table on standard output or -o",
+    .help = "evaluate a table of designs and write a table of their results",
     .about =
-        "For an optimiser of your own. A row of the table is a design: one value for each design variable of the case. "
-        "The variables are those of optimize.variables, or one pretension in N for each boundary cable with a free "
-        "end. A row of the answer has psi, the residual, the tension ratios and the objectives of the design, with the "
-        "same bits as in hifdm run. The command uses all cores.",
+        "Use this command with your own optimiser. Each row of the table is a design, with one value for each design "
+        "variable of the case. The design variables are those of optimize.variables, or the pretension in N of each "
+        "boundary cable with a free end. Each row of the results has psi, the residual, the tension ratios and the "
+        "objectives of one design. The results are bit-identical to those of hifdm run. The command uses all cores.",
     .examples = "hifdm evaluate case.yaml --template base.csv\n"
                 "hifdm evaluate case.yaml --designs designs.csv -o results.csv\n"
                 "hifdm evaluate case.yaml --designs designs.csv -o results.csv --jacobian slopes.csv",

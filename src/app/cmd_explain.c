@@ -144,7 +144,7 @@ static hf_status explain_each(const char *all, FILE *f, hf_messages *messages)
         rest += n;
     }
     if (!*unknown) return HF_OK;
-    return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; 'hifdm explain' lists all words",
+    return hf_error(messages, HF_BAD_USAGE, "there is no entry '%.64s'; 'hifdm explain' lists all entries",
                     is_any ? unknown : all);
 }
 
@@ -165,7 +165,7 @@ static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *m
     const char *near = hf_text_nearest(all, names, n_name);
     bool is_likely = near && (strlen(word) > SHORT || (hf_word_letter(near[0]) == hf_word_letter(word[0]) &&
                                                        hf_word_letter(near[1]) == hf_word_letter(word[1])));
-    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "nothing is called '%.64s'; did you mean '%s'?", all, near);
+    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "there is no entry '%.64s'; did you mean '%s'?", all, near);
     return explain_each(all, file, messages);
 }
 
@@ -173,8 +173,8 @@ const hf_command hf_cmd_explain = {
     .name = "explain",
     .argument = "[WORD...]",
     .help = "explain a status, a warning, a figure or a term, and say what to do",
-    .about = "WORD is a word of the summary, of --json or of a message, a term of several words, or a whole warning in "
-             "quotes. Without it, hifdm lists all words.",
+    .about = "WORD is a word of the summary, of --json or of a message, a term of several words, or a complete "
+             "warning in quotes. Without WORD, hifdm explain lists all entries.",
     .examples = "hifdm explain straight_chain\n"
                 "hifdm explain position_bound_m\n"
                 "hifdm explain \"warning: slack in the form-finding shape, 1: c7\"",

@@ -36,14 +36,15 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
     }
     list_exporters(list, sizeof list);
     if (n_asked == 0) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
-    if (o->stage && o->load_case) return hf_error(messages, HF_BAD_USAGE, "--stage and --load-case exclude each other");
+    if (o->stage && o->load_case) return hf_error(messages, HF_BAD_USAGE, "--stage and --load-case cannot be combined");
     for (int i = 0; i < HF_N_EXPORTER; i++)
         if (o->load_case && o->export_to[i] && !hf_exporter_table[i]->takes_case)
-            return hf_error(messages, HF_BAD_USAGE, "--load-case does not go with %s, %s", hf_exporter_table[i]->option,
+            return hf_error(messages, HF_BAD_USAGE, "--load-case cannot be combined with %s, %s",
+                            hf_exporter_table[i]->option,
                             hf_exporter_table[i]->takes_stage ? "which is of the design that all load cases are made of"
                                                               : "which writes every shape");
     if (o->stage && n_one_shape == 0)
-        return hf_error(messages, HF_BAD_USAGE, "--stage does not go with %s alone, which writes every shape",
+        return hf_error(messages, HF_BAD_USAGE, "--stage cannot be combined with %s alone, which writes every shape",
                         every_shape->option);
     return HF_OK;
 }
@@ -85,8 +86,8 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_export = {
     .name = "export",
     .argument = "FILE",
-    .help = "write a result as CSV files, for ParaView, or as a cut list",
-    .about = "Numbers have 17 significant digits: read back they are the stored ones, bit by bit.",
+    .help = "write a result as CSV files, as VTK files for ParaView, or as a cut list",
+    .about = "Numbers have 17 significant digits, so a program that reads them gets exactly the stored values.",
     .examples = "hifdm export chen2022.h5 --csv best\n"
                 "hifdm export chen2022.h5 --csv found --stage form\n"
                 "hifdm export night.h5 --csv cold --load-case cold\n"

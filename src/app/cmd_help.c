@@ -104,7 +104,7 @@ static hf_status command_help(const hf_options *o, FILE *file, hf_messages *mess
 const hf_command hf_cmd_help = {
     .name = "help",
     .argument = "[COMMAND]",
-    .help = "tell what a command does, its options, and examples",
+    .help = "explain a command, with its options and examples",
     .about = "hifdm COMMAND --help is the same as hifdm help COMMAND.",
     .examples = "hifdm help run\n"
                 "hifdm help --man | man -l -\n"

@@ -24,8 +24,9 @@ static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *mes
 const hf_command hf_cmd_merge = {
     .name = "merge",
     .argument = "STUDY",
-    .help = "one HDF5 file with a table of all points and links to their result files",
-    .about = "At any time after the sweep began; points that are not there yet have the status not_evaluated.",
+    .help = "write an HDF5 file with a table of all points and links to their result files",
+    .about = "hifdm merge works at any time after the start of the sweep. Points without a result have the status "
+             "not_evaluated.",
     .examples = "hifdm merge study.yaml -o study.h5\n"
                 "hifdm report study.h5",
     .run = command_merge,

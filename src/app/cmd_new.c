@@ -166,7 +166,8 @@ static hf_status add_file(hf_file_out_set *files, const char *path, const new_te
     bool is_there;
     HF_TRY(hf_file_out_look(path, &is_there, messages));
     if (is_there)
-        return hf_error(messages, HF_EXISTS, "%s exists, and is not replaced: use another name, or remove it", path);
+        return hf_error(messages, HF_EXISTS, "%s exists and is not replaced; use another name, or remove the file",
+                        path);
     return hf_file_out_set_write(files, path, write_text, text, messages);
 }
 
@@ -176,8 +177,8 @@ static hf_status check_name(const char *word, const char *name, size_t n, hf_mes
     static const char may_have[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
     if (n > 0 && n <= 100 && strspn(name, may_have) >= n && *name != '-' && *name != '.') return HF_OK;
     return hf_error(messages, HF_BAD_USAGE,
-                    "'%s': a new case needs a name of letters, digits, '_', '-' and '.', which does not begin with "
-                    "one of the last two",
+                    "'%s': the name of a new case has letters, digits, '_', '-' and '.', and does not begin with '-' "
+                    "or '.'",
                     word);
 }
 
@@ -209,9 +210,10 @@ static hf_status command_new(const hf_options *o, FILE *file, hf_messages *messa
 const hf_command hf_cmd_new = {
     .name = "new",
     .argument = "NAME",
-    .help = "write NAME.yaml, a case to begin with: commented, and it runs as it is",
-    .about = "A round reflector of two tied nets unless an option says otherwise. With --import the tables "
-             "NAME_nodes.csv and NAME_cables.csv of a small net are beside it. No file is ever replaced.",
+    .help = "write NAME.yaml, a commented case that runs without changes",
+    .about = "Without options, the case is a round reflector of two nets that ties connect. With --import, hifdm new "
+             "also writes the tables NAME_nodes.csv and NAME_cables.csv of a small net. hifdm new never replaces a "
+             "file.",
     .examples = "hifdm new dish\n"
                 "hifdm new mine --import",
     .run = command_new,

@@ -16,8 +16,8 @@ static hf_status command_recover(const hf_options *o, FILE *file, hf_messages *m
 const hf_command hf_cmd_recover = {
     .name = "recover",
     .argument = "FILE",
-    .help = "add the generations of FILE.journal to an unfinished result; `run` does that by itself",
-    .about = "For a result whose run was killed: as far as it came, without running on.",
+    .help = "add the generations of FILE.journal to an unfinished result; `run` does this automatically",
+    .about = "Use this command if a run was killed and you want its result so far, without continuing the run.",
     .examples = "hifdm recover night.h5",
     .reads_results = true,
     .run = command_recover,

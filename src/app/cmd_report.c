@@ -17,9 +17,9 @@ static hf_status command_report(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_report = {
     .name = "report",
     .argument = "FILE [OTHER]",
-    .help = "write a result as one HTML page to look at: net, histories, tensions, summary",
-    .about = "The page is one file for any browser; it needs no network. With a second result the page compares the "
-             "two: what differs in their cases, their figures, the tensions of each cable.",
+    .help = "write a result as one HTML page: net, histories, tensions, summary",
+    .about = "The page is one file that any browser opens without a network. With a second result, the page compares "
+             "the two results: the differences between their cases, their figures and the tensions of each cable.",
     .examples = "hifdm report chen2022.h5 -o chen2022.html\n"
                 "hifdm report monday.h5 tuesday.h5 -o both.html",
     .reads_results = true,

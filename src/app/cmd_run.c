@@ -12,9 +12,10 @@
 
 static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 {
-    if (o->task >= 0 && o->tasks == 0) return hf_error(messages, HF_BAD_USAGE, "'--task' needs '--tasks' beside it");
+    if (o->task >= 0 && o->tasks == 0) return hf_error(messages, HF_BAD_USAGE, "'--task' also needs '--tasks'");
     if (o->tasks > 0 && o->task >= o->tasks)
-        return hf_error(messages, HF_BAD_USAGE, "--task %d: tasks of %d are 0 to %d", o->task, o->tasks, o->tasks - 1);
+        return hf_error(messages, HF_BAD_USAGE, "--task %d: the %d tasks are numbered 0 to %d", o->task, o->tasks,
+                        o->tasks - 1);
     return HF_OK;
 }
 
@@ -49,12 +50,12 @@ const hf_command hf_cmd_run = {
     .name = "run",
     .argument = "CASE",
     .help = "run what the case file contains and store it in one HDF5 file",
-    .about = "The case file determines the stages. Form-finding always runs. With a section optimize, the genetic "
-             "algorithm and Levenberg-Marquardt follow, and with a section tolerance, samples of the as-built net. The "
-             "run stores every generation. To resume a run that was killed or told to stop, run the same command "
-             "again. A finished result is kept, unless --restart is given.\n"
-             "If the case has a front (optimize.front), --point makes one point of it the result, without a search: "
-             "with its shape, its cut list and its as-built net.",
+    .about = "The case file determines the stages. Form-finding always runs. If the case has a section optimize, the "
+             "genetic algorithm and Levenberg-Marquardt follow. If it has a section tolerance, hifdm also computes "
+             "samples of the as-built net. The run stores every generation. To resume a run that was killed or "
+             "interrupted, run the same command again. hifdm keeps a finished result unless you give --restart.\nIf "
+             "the case has a front (optimize.front), --point makes one point of the front the result, without a "
+             "search. The result then has the shape, the cut list and the as-built net of this point.",
     .examples = "hifdm run configs/chen2022.yaml\n"
                 "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5\n"
                 "hifdm run case.yaml --point front.h5:7 -o point7.h5",

@@ -18,8 +18,8 @@ static hf_status refuse_case(const char *file, hf_messages *messages)
     if (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0) return HF_OK;
     bool is_study = hf_study_is(file);
     return hf_error(messages, HF_IO,
-                    "%s: is not an HDF5 file, so no result of hifdm, but a %s: `hifdm check %s` says what it would do, "
-                    "`hifdm %s %s` makes the file to show",
+                    "%s: is not a result file (HDF5) but a %s. `hifdm check %s` prints what a run would do; `hifdm %s "
+                    "%s` writes a result that `hifdm show` prints",
                     file, is_study ? "study" : "case", file, is_study ? "merge" : "run", file);
 }
 
@@ -56,10 +56,10 @@ const hf_command hf_cmd_show = {
     .argument = "FILE",
     .help = "print the summary of a result file, or the table of a merged study",
     .about =
-        "Prints the summary that hifdm run printed at its end, warnings last: the answer, then a row for each stage. "
-        "--verbose adds certificates, ratios of sets, objectives, the surface of every stage, and times.\n"
-        "Of a merged study: its axes, its points as a table with the best one marked, and what is the same at all "
-        "of them; with --verbose all points of a large one.",
+        "hifdm show prints the summary of a run: first the result, then a row for each stage, and the warnings last. "
+        "--verbose adds certificates, the tension ratios of sets, the objectives, the surface of every stage, and "
+        "times.\nFor a merged study, hifdm show prints the axes, the values that all points share, and a table of the "
+        "points in which the best one is marked. With --verbose it prints all points of a large study.",
     .examples = "hifdm show chen2022.h5\n"
                 "hifdm show chen2022.h5 --verbose\n"
                 "hifdm show chen2022.h5 --json\n"

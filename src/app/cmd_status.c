@@ -79,8 +79,8 @@ static hf_status command_status(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_status = {
     .name = "status",
     .argument = "STUDY",
-    .help = "count what is done, running, failed and missing, and say why",
-    .about = "At any time, from any machine that sees the folder of the results.",
+    .help = "count the points that are done, running, failed and missing, and give the reasons",
+    .about = "The command works at any time, on any machine that can read the folder of the results.",
     .examples = "hifdm status study.yaml",
     .run = command_status,
 };

@@ -52,11 +52,13 @@ static hf_status choose_task(const hf_options *o, int *task, int *tasks, hf_mess
         environment_number("SLURM_ARRAY_TASK_STEP", &step);
         if (step < 1 || high - low != (count - 1) * step || id < low || (id - low) % step)
             return hf_error(messages, HF_BAD_USAGE,
-                            "the Slurm array has gaps: say with --tasks N how many tasks share the points");
+                            "the Slurm array has gaps; use --tasks N to give the number of tasks that share the "
+                            "points");
         *task = (id - low) / step;
         *tasks = count;
     }
-    if (*task >= *tasks) return hf_error(messages, HF_BAD_USAGE, "task %d of %d: they count from 0", *task, *tasks);
+    if (*task >= *tasks)
+        return hf_error(messages, HF_BAD_USAGE, "task %d of %d: the tasks are numbered from 0", *task, *tasks);
     return HF_OK;
 }
 
@@ -123,9 +125,10 @@ static hf_status command_sweep(const hf_options *o, FILE *file, hf_messages *mes
 const hf_command hf_cmd_sweep = {
     .name = "sweep",
     .argument = "STUDY",
-    .help = "run the points of a sweep that are missing, on all cores; each once, a failed one stops no other",
-    .about = "A study is a base case and axes over its keys. Points that are done are not run again, so the same "
-             "command goes on after whatever stopped it. In a Slurm array every task takes its share.",
+    .help = "run the missing points of a sweep on all cores; a failed point does not stop the others",
+    .about = "A study has a base case and axes over its keys. hifdm sweep does not run finished points again, so the "
+             "same command continues a sweep that was stopped. In a Slurm array, each task runs its share of the "
+             "points.",
     .examples = "hifdm sweep study.yaml\n"
                 "hifdm sweep study.yaml --task 0 --tasks 8\n"
                 "hifdm sweep study.yaml --retry failed",

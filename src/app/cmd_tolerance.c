@@ -4,12 +4,12 @@
 const hf_command hf_cmd_tolerance = {
     .name = "tolerance",
     .argument = "CASE",
-    .help = "samples of the as-built net, with the errors of the section tolerance",
+    .help = "compute samples of the as-built net with the errors in section tolerance",
     .about =
-        "As hifdm run, for a case with a section tolerance: the net is cut at the shape of the result, after an "
-        "optimisation if there is one, and solved again with errors of lengths, stiffness, supports and temperature. "
-        "Tasks of a job array share the samples: each keeps its own beside FILE, and the same command without --task "
-        "puts them together, to the same bits as one run.",
+        "This command works like hifdm run, for a case with a section tolerance. The shape of the result gives the "
+        "cut lengths of the cables. hifdm solves the net again with errors of lengths, stiffness, supports and "
+        "temperature. The tasks of a job array share the samples, and each task stores its own beside FILE. The same "
+        "command without --task combines them, bit-identical to the result of one run.",
     .examples = "hifdm tolerance case.yaml -o case.h5\n"
                 "hifdm tolerance case.yaml -o case.h5 --task 3 --tasks 16\n"
                 "hifdm tolerance case.yaml -o case.h5 --tasks 16",

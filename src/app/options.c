@@ -55,7 +55,7 @@ static hf_status read_only_choice(const reading *r)
 {
     int *choice = place_of(r);
     if (*choice && *choice != r->option->number)
-        return hf_error(r->messages, HF_BAD_USAGE, "%s excludes the kind that was asked for before it",
+        return hf_error(r->messages, HF_BAD_USAGE, "%s cannot be combined with the export given before it",
                         r->option->name);
     return read_choice(r);
 }
@@ -80,7 +80,7 @@ static hf_status read_count(const reading *r)
 static hf_status read_task(const reading *r)
 {
     uint64_t number;
-    if (!hf_text_uint64(r->value, &number) || number >= TASKS_MAX) return refuse(r, "a whole number from 0 on");
+    if (!hf_text_uint64(r->value, &number) || number >= TASKS_MAX) return refuse(r, "a whole number >= 0");
     *(int *)place_of(r) = (int)number;
     return HF_OK;
 }
@@ -94,7 +94,7 @@ static hf_status read_seed(const reading *r)
 static hf_status read_tolerance(const reading *r)
 {
     double *tolerance = place_of(r);
-    return hf_text_double(r->value, tolerance) && *tolerance >= 0 ? HF_OK : refuse(r, "a number from 0 on");
+    return hf_text_double(r->value, tolerance) && *tolerance >= 0 ? HF_OK : refuse(r, "a number >= 0");
 }
 
 static hf_status read_progress(const reading *r)
@@ -141,7 +141,7 @@ static unsigned states_of(const char *text)
 static hf_status read_retry(const reading *r)
 {
     r->options->retry = states_of(r->value);
-    return r->options->retry ? HF_OK : refuse(r, "of missing, failed, outdated, with commas");
+    return r->options->retry ? HF_OK : refuse(r, "a list of missing, failed and outdated, separated by commas");
 }
 
 /* ---- the table ---- */
@@ -313,7 +313,9 @@ static hf_status find_option(const char *word, const hf_command *command, hf_opt
         return HF_OK;
     }
     if (is_elsewhere)
-        return hf_error(messages, HF_BAD_USAGE, "'%s' does not go with this command; 'hifdm help %s' lists what does",
+        return hf_error(messages, HF_BAD_USAGE,
+                        "'%s' is not an option of this command; 'hifdm help %s' lists its "
+                        "options",
                         word, command->name);
     char where[32];
     snprintf(where, sizeof where, " %s", command->name);
@@ -352,13 +354,13 @@ static hf_status read_words(int argc, char *const *argv, const hf_command *comma
         if (option.argument) {
             bool is_joined = equals && argv[i][1] == '-';
             if (!is_joined && i + 1 == argc)
-                return hf_error(messages, HF_BAD_USAGE, "'%s' needs %s behind it", argv[i], option.argument);
+                return hf_error(messages, HF_BAD_USAGE, "'%s' must be followed by %s", argv[i], option.argument);
             value = is_joined ? equals + 1 : argv[++i];
             if (!*value && option.read == read_text) /* a file or a folder */
-                return hf_error(messages, HF_BAD_USAGE, "'%s' needs %s behind it, not an empty word", option.name,
-                                option.argument);
+                return hf_error(messages, HF_BAD_USAGE, "'%s' must be followed by %s, not by an empty word",
+                                option.name, option.argument);
         } else if (equals) {
-            return hf_error(messages, HF_BAD_USAGE, "'%s' takes no value", option.name);
+            return hf_error(messages, HF_BAD_USAGE, "'%s' has no value", option.name);
         }
         HF_TRY(option.read(&(reading){&option, value, o, messages}));
     }
@@ -369,7 +371,7 @@ hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_
 {
     const hf_command *command;
     *options = (hf_options){.argc = argc, .argv = argv, .task = -1};
-    if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "a command is missing; 'hifdm help' lists them");
+    if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "there is no command; 'hifdm help' lists the commands");
     HF_TRY(find_command(argv[1], &command, messages));
     options->command = command;
     options->set = calloc((size_t)argc, sizeof *options->set);

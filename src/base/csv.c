@@ -36,10 +36,10 @@ void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const c
 hf_status hf_csv_close_faults(hf_csv *t)
 {
     if (t->n_comma > 1)
-        hf_error(t->messages, HF_BAD_CASE, "%s: and %d more numbers with decimal commas", t->path, t->n_comma - 1);
+        hf_error(t->messages, HF_BAD_CASE, "%s: %d more numbers have decimal commas", t->path, t->n_comma - 1);
     t->n_comma = 0;
     if (t->n_fault > HF_FAULT_MAX)
-        hf_error(t->messages, HF_BAD_CASE, "%s: and %d more faults", t->path, t->n_fault - HF_FAULT_MAX);
+        hf_error(t->messages, HF_BAD_CASE, "%s: there are %d more faults", t->path, t->n_fault - HF_FAULT_MAX);
     return t->n_fault ? HF_BAD_CASE : HF_OK;
 }
 

@@ -38,15 +38,14 @@ static bool is_trusted(const struct stat *link)
 static hf_status refuse_link(const char *path, const char *what, hf_messages *messages)
 {
     return hf_error(messages, HF_IO,
-                    "%s: is a symbolic link that somebody else made; name the %s that it leads to, or choose another "
-                    "name",
+                    "%s: is a symbolic link of another user; name the %s to which it leads, or choose another name",
                     path, what);
 }
 
 /* Reports that a path cannot be examined. errno must be that of the failed call. */
 static hf_status cannot_look(const char *path, hf_messages *messages)
 {
-    return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+    return hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
 }
 
 /* Returns HF_IO if a folder on the way to `path` is a link made by somebody else in a folder to which everybody may
@@ -111,7 +110,7 @@ hf_status hf_file_out_folder(const char *path, hf_messages *messages)
     strcpy(target, name);
     HF_TRY(follow(target, "folder", messages));
     if (mkdir(name, 0777) == 0 || errno == EEXIST) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: cannot make this folder: %s", path, strerror(errno));
+    return hf_error(messages, HF_IO, "%s: cannot create this folder: %s", path, strerror(errno));
 }
 
 hf_status hf_file_out_spare(const char *input, const char *what, const char *output, hf_messages *messages)
@@ -347,7 +346,7 @@ hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messa
     int seen = hf_path_look(f->path, &info);
     if (seen < 0) return cannot_look(f->path, messages);
     if (seen > 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* rename(2) never replaces a folder */
-        return hf_error(messages, HF_IO, "%s: is not an ordinary file; choose another name", path);
+        return hf_error(messages, HF_IO, "%s: is not a regular file; choose another name", path);
     hf_file_out_clean(f->path);
     return hf_file_out_make(f->path, f) == 0 ? HF_OK : fail(path, messages);
 }

@@ -28,7 +28,7 @@ static hf_status refuse_kind(const char *path, hf_status code, hf_messages *mess
                        : S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode) ? "a device"
                        : S_ISSOCK(info.st_mode)                         ? "a socket"
                                                                         : "no file of the disk";
-    return hf_error(messages, code, "%s: is %s; name an ordinary file", path, kind);
+    return hf_error(messages, code, "%s: is %s; name a regular file", path, kind);
 }
 
 /* Reads to the end of the file. A file may be longer than its reported size; files in /proc are. Sets *buffer to NULL

@@ -517,8 +517,8 @@ static hf_status sample_figures(adjustment *a, double part, double figure_m[HF_E
 
 /* ---- order of adjustments ---- */
 
-/* Computes the changes of tension that each chosen adjustment causes in the linear model, change_N [n_turnbuckle][n_cable] in
- * the order of a->steps. */
+/* Computes the changes of tension that each chosen adjustment causes in the linear model. change_N has the shape
+ * [n_turnbuckle][n_cable], in the order of a->steps. */
 static void find_changes(adjustment *a, double *change_N)
 {
     size_t n_cable = (size_t)a->problem.n_tension;

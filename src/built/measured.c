@@ -67,7 +67,7 @@ static hf_status count_nodes(const char *path, const hf_model *m, const hf_measu
     for (int row = 0; row < m->n_free + m->n_attachment; row++)
         n += measured->line[row] > 0;
     if (n >= NODES_MIN) return HF_OK;
-    return hf_error(messages, HF_BAD_CASE, "%s: has %d free node%s of the net, but at least %d are needed", path, n,
+    return hf_error(messages, HF_BAD_CASE, "%s: has positions of %d free node%s, but at least %d are needed", path, n,
                     n == 1 ? "" : "s", NODES_MIN);
 }
 
@@ -275,7 +275,7 @@ static void name_far(const char *path, const hf_built *b, const double *expected
         hf_error(
             messages, HF_BAD_CASE,
             "%s:%d: node '%s' is %.4g mm from its position in the design, but section tolerance and sigma_m allow for "
-            "%.3g mm: check the id and the numbers, and correct the line or leave it out",
+            "%.3g mm: check the id and the numbers; correct the line or remove it",
             path, measured->line[row], b->scene.node_id[i], far_m * 1e3, allowed * 1e3);
     }
 }
@@ -303,8 +303,8 @@ hf_status hf_measured_check(const char *path, const hf_built *b, const double *e
     if (tells_m > VAGUE * all_m)
         hf_warning(
             messages,
-            "%s: with a sigma_m of about %.3g m these positions are of almost no use: section tolerance allows for "
-            "%.3g m only",
+            "%s: a sigma_m of about %.3g m makes these positions almost useless, because section tolerance allows for "
+            "only %.3g m",
             path, tells_m / sqrt(3), all_m);
     rigid_fit f = fit_motion(b, measured);
     if (f.square > DOUBTFUL * DOUBTFUL * allowed_square && f.rest < EXPLAINED * f.square) {

@@ -94,14 +94,14 @@ static hf_status heat_cables(const maker *q, int row)
     if (n == 0) return HF_BAD_CASE;
     if (n_wild)
         hf_error(q->messages, HF_BAD_CASE,
-                 "%s: %d cables would change by more than %g of their lengths, like '%s' by %.3g at %.6g K: is this "
-                 "temperature wrong, or its expansion_per_K?",
+                 "%s: %d cables would change by more than %g times their lengths, such as '%s' by %.3g times at %.6g "
+                 "K. Check this temperature and expansion_per_K",
                  location_in_row(q, row, temperature_key(s), where), n_wild, LARGEST_STRAIN, scene->cable_id[wild],
                  q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild], load_case->rise_K[wild]);
     if (n_unknown == 0) return n_wild ? HF_BAD_CASE : HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
-                    "%s: the expansion of %d cables is not known, like '%s': give expansion_per_K of their sets in "
-                    "`cables`; 0 for those that keep their lengths",
+                    "%s: the expansion of %d cables is not known, such as '%s'. Add expansion_per_K of their sets to "
+                    "`cables`; use 0 for cables that do not expand",
                     location_in_row(q, row, temperature_key(s), where), n_unknown, scene->cable_id[unknown]);
 }
 
@@ -118,11 +118,12 @@ hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_par
         return hf_error(messages, HF_BAD_CASE, "%s: the truss has no members of unit %s", where, hf_part_word[part]);
     if (!c->has_truss_import && !hf_config_location(c, "truss.expansion_per_K", location, sizeof location))
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: the expansion of the truss is not known: give truss.expansion_per_K; 0 for one that keeps "
-                        "its shape%s",
+                        "%s: the expansion of the truss is not known. Add truss.expansion_per_K; use 0 for a truss "
+                        "that does not expand%s",
                         where, other);
     if (n_expanding == 0 && c->has_truss_import)
-        hf_warning(messages, "%s: no member of the truss expands: its table has no expansion_per_K above 0", where);
+        hf_warning(messages, "%s: no member of the truss expands, because its table has no expansion_per_K above 0",
+                   where);
     return HF_OK;
 }
 
@@ -170,8 +171,8 @@ static hf_status weigh(const maker *q, int row)
     if (n_unknown == 0) return HF_OK;
     return hf_error(
         q->messages, HF_BAD_CASE,
-        "%s: the mass of %d cables is not known, like '%s': give mass_kg_per_m of their sets in `cables`; 0 "
-        "for those that weigh nothing",
+        "%s: the mass of %d cables is not known, such as '%s'. Add mass_kg_per_m of their sets to `cables`; use 0 for "
+        "cables without mass",
         location_in_row(q, row, "gravity_m_per_s2", where), n_unknown, q->scene->cable_id[unknown]);
 }
 
@@ -232,7 +233,7 @@ static hf_status read_table(hf_csv *t, const hf_scene *s, hf_load_case *load_cas
         n_known += where[k] >= 0;
     if (n_known == 0)
         return hf_error(t->messages, HF_BAD_CASE,
-                        "%s:%d: has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it says nothing",
+                        "%s:%d: has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it gives no loads",
                         t->path, t->header_line);
     HF_TRY(hf_csv_index(t, where[ROW_ID]));
     HF_TRY(hf_csv_know(t, s->n_node, s->node_id));
@@ -262,8 +263,8 @@ static hf_status check_EA(const maker *q)
     if (n == 0) return HF_OK;
     return hf_error(
         q->messages, HF_BAD_CASE,
-        "%s: %d cables have no EA, which load cases of the as-built net need, like '%s': give scene.EA_inner_N "
-        "and scene.EA_boundary_N, or the column EA_N of an imported net",
+        "%s: %d cables have no EA, such as '%s', but load cases of the as-built net need it. Add scene.EA_inner_N and "
+        "scene.EA_boundary_N, or the column EA_N of an imported net",
         location_in_row(q, 0, "name", where), n, s->cable_id[first]);
 }
 

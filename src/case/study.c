@@ -122,7 +122,8 @@ hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
         const hf_study_axis *axis = &s->axis[a];
         if (s->is_zip && axis->n_value != s->axis[0].n_value)
             return hf_error(messages, HF_BAD_CASE,
-                            "%s:%d:%d: sweep.%s: has %d values where %s has %d; combine: zip needs as many on all axes",
+                            "%s:%d:%d: sweep.%s: has %d values, but %s has %d; combine: zip needs the same number of "
+                            "values on all axes",
                             s->path, axis->line, axis->column, axis->key.path, axis->n_value, s->axis[0].key.path,
                             s->axis[0].n_value);
         if (s->is_zip)
@@ -131,7 +132,7 @@ hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
             n *= axis->n_value;
     }
     if (n > HF_STUDY_POINT_MAX)
-        return hf_error(messages, HF_BAD_CASE, "%s: sweep: %.10g points, and a study has at most %d", s->path, n,
+        return hf_error(messages, HF_BAD_CASE, "%s: sweep: has %.10g points, but a study has at most %d", s->path, n,
                         HF_STUDY_POINT_MAX);
     s->n_point = (int)n;
     return HF_OK;

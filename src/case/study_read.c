@@ -601,10 +601,11 @@ hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages
     r.faults = (hf_config_faults){.messages = messages, .origin = study->path};
     hf_status status = HF_OK;
     if (length > STUDY_MAX)
-        status = hf_error(messages, HF_BAD_CASE, "%s: longer than %d MB, so no study", path, STUDY_MAX >> 20);
+        status = hf_error(messages, HF_BAD_CASE, "%s: is not a study, because it is longer than %d MB", path,
+                          STUDY_MAX >> 20);
     else if (hf_text_too_deep(text))
         status =
-            hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: too many brackets are open", path, hf_text_too_deep(text));
+            hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: too many nested brackets", path, hf_text_too_deep(text));
     else
         parse(&r, text, length);
     free(text);

@@ -159,7 +159,8 @@ static hf_status load(hf_messages *messages)
     takes_turns = is_limited();
     if (takes_turns && !has_room())
         return hf_error(messages, HF_NO_MEMORY,
-                        "LAPACK needs %d MB of address space, and the limit leaves less: raise it (ulimit -v, -d)",
+                        "LAPACK needs %d MB of address space, but the limit leaves less; raise it (ulimit -v, ulimit "
+                        "-d)",
                         ROOM_MB);
     /* an OpenMP library of this process that reads the environment late must read it before it is changed */
     if (find_in(RTLD_DEFAULT, "omp_get_max_threads", &openmp.get_max_threads)) openmp.get_max_threads();

@@ -66,8 +66,8 @@ hf_status hf_cable_demand_EA(const hf_scene *s, const char *where, const char *w
     for (int g = 0; g < 2; g++)
         if (n[g])
             hf_error(messages, HF_BAD_CASE,
-                     "%s: %d %s cables have no EA, which %s, like '%s': give scene.EA_%s_N, or the column EA_N of an "
-                     "imported net%s",
+                     "%s: %d %s cables have no EA, which %s, such as '%s'. Add scene.EA_%s_N, or the column EA_N of "
+                     "an imported net%s",
                      where, n[g], hf_group_word[g], who_needs, s->cable_id[first[g]], hf_group_word[g], then);
     return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
 }

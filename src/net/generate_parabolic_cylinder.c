@@ -408,9 +408,8 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
     double ny = (double)cylinder->modules[1] * cylinder->cells_per_module[1] + 1;
     bool with_middles = cylinder->pattern == HF_PATTERN_DIAGONAL, is_double = cylinder->rear_distance_m > 0;
     if ((nx * ny + (with_middles ? (nx - 1) * (ny - 1) : 0)) * (is_double ? 2 : 1) > NODE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes%s%s are more than this program takes (%d)", nx,
-                        ny, with_middles ? " and those in the middle of cells" : "", is_double ? ", twice," : "",
-                        NODE_MAX);
+        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes%s%s exceed the maximum of %d", nx, ny,
+                        with_middles ? " and those in the middle of cells" : "", is_double ? ", twice," : "", NODE_MAX);
     const char *key = hf_scene_parabolic_cylinder_fault(cylinder, what, sizeof what);
     if (key) return hf_error(messages, HF_BAD_CASE, "scene.parabolic_cylinder.%s: %s", key, what);
     const hf_double_net rear = rear_of(cylinder);

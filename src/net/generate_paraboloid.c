@@ -314,7 +314,7 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
     double rings = paraboloid->rings, n_layer = paraboloid->rear_distance_m > 0 ? 2 : 1;
     bool is_quad = paraboloid->grid == HF_GRID_QUAD; /* nodes of the square around the aperture */
     if (n_layer * (is_quad ? (2 * rings + 1) * (2 * rings + 1) : 1 + 3 * rings * (rings + 1)) > NODE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "scene: %d rings make more nodes than this program takes (%d)",
+        return hf_error(messages, HF_BAD_CASE, "scene: the nodes of %d rings exceed the maximum of %d",
                         paraboloid->rings, NODE_MAX);
     const char *key = hf_scene_paraboloid_fault(paraboloid, what, sizeof what);
     if (key) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.%s: %s", key, what);

@@ -421,7 +421,7 @@ static hf_status check_attachments(const hf_model *m, int n, const int *node, hf
 {
     for (int i = 0; i < n; i++) {
         if (node[i] < 0 || node[i] >= m->n_node || m->row_of_node[node[i]] < m->n_free)
-            return hf_error(messages, HF_BAD_CASE, "attachment %d of the truss: node %d is no support", i, node[i]);
+            return hf_error(messages, HF_BAD_CASE, "attachment %d of the truss: node %d is not a support", i, node[i]);
         for (int j = 0; j < i; j++)
             if (node[j] == node[i])
                 return hf_error(messages, HF_BAD_CASE, "attachments %d and %d of the truss are the same node", j, i);

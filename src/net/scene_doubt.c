@@ -46,7 +46,7 @@ static void doubt_cables(const hf_scene *s, hf_side *all, hf_messages *messages)
         hf_warning(messages, "%s joins the same two nodes as cable '%s'", place, s->cable_id[all[first].of]);
     }
     if (n_said > SAID_MAX)
-        hf_warning(messages, "scene: and %d more cables that join the same two nodes as another", n_said - SAID_MAX);
+        hf_warning(messages, "scene: %d more cables join the same two nodes as another cable", n_said - SAID_MAX);
 }
 
 /* ---- far nodes ---- */
@@ -83,7 +83,7 @@ static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messag
             "%s is %.3g m from the middle of the net, %.3g times as far as the others: are all coordinates in m?",
             place, t->from[i].m, t->from[i].m / t->from[k - 1].m);
     }
-    if (n > k + SAID_MAX) hf_warning(messages, "scene: and %d more nodes as far away", n - k - SAID_MAX);
+    if (n > k + SAID_MAX) hf_warning(messages, "scene: %d more nodes are as far away", n - k - SAID_MAX);
 }
 
 /* Warns if the longest side of the box around all nodes is too long. */
@@ -114,11 +114,13 @@ static void doubt_lengths(const hf_scene *s, hf_messages *messages)
         bool is_length = s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC;
         if (!is_length || fabs(ratio - 1) <= LENGTH_PART || ++n_said > SAID_MAX) continue;
         hf_scene_location(s, true, e, place, sizeof place);
-        hf_warning(messages, "%s is %.4g m long by its law, %.3g times the distance of its nodes: is it in m?", place,
-                   s->target[e], ratio);
+        hf_warning(messages,
+                   "%s is %.4g m long by its law, %.3g times the distance between its nodes: is its length "
+                   "in m?",
+                   place, s->target[e], ratio);
     }
     if (n_said > SAID_MAX)
-        hf_warning(messages, "scene: and %d more cables of other lengths than their nodes are apart",
+        hf_warning(messages, "scene: %d more cables have other lengths than the distances between their nodes",
                    n_said - SAID_MAX);
 }
 
@@ -194,9 +196,9 @@ static void doubt_plane(const hf_scene *s, hf_messages *messages)
     double rms_m = sqrt(square / n);
     if (rms_m > FLATTER_PART * extent_m)
         hf_warning(messages,
-                   "scene: all supports are %s, and no load, tie or strut holds the net off it: whatever its tensions, "
-                   "it collapses there, and the inner nodes are at least %.4g mm RMS from their target positions. Put "
-                   "supports on the surface, tie the net to another one, or load it",
+                   "scene: all supports are %s, and no load, tie or strut holds the net away from it. The net "
+                   "collapses there with any tensions, and its inner nodes are at least %.4g mm RMS from their target "
+                   "positions. Put supports on the surface, tie the net to another net, or add loads",
                    word[f.n_along], rms_m * 1e3);
 }
 

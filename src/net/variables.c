@@ -42,7 +42,7 @@ static bool varies_support(hf_vary vary)
 static hf_status take(maker *q, int row, int at, const char *kind, const char *id)
 {
     if (q->taken[at] >= 0)
-        return hf_error(q->messages, HF_BAD_CASE, "%s: %s '%s' is varied by row %d already", where_in(q, row, "set"),
+        return hf_error(q->messages, HF_BAD_CASE, "%s: %s '%s' is already varied by row %d", where_in(q, row, "set"),
                         kind, id, q->taken[at]);
     q->taken[at] = row;
     return HF_OK;
@@ -173,7 +173,7 @@ static hf_status make_row(maker *q, int row)
     for (int i = 0; i < n_picked && !varies_support(s->vary); i++)
         HF_TRY(add_cable(q, row, q->picked[i]));
     if (q->m->n_variable == before)
-        return hf_error(q->messages, HF_BAD_CASE, "%s: set %s has %d cables, but no %s: there is nothing to vary",
+        return hf_error(q->messages, HF_BAD_CASE, "%s: set %s has %d cables, but no %s, so there is nothing to vary",
                         where_in(q, row, "set"), s->set, n_picked,
                         varies_support(s->vary) ? "support at their ends that holds a free node"
                                                 : "cable with a free end");

@@ -93,7 +93,8 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_extent extent, hf
 bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_messages *messages)
 {
     if (s->has_truss && !s->finished)
-        hf_warning(messages, "%s: is unfinished: the export has no truss, because a run stores it at its end", o->file);
+        hf_warning(messages, "%s: is unfinished: the export has no truss, because a run stores the truss at its end",
+                   o->file);
     return s->has_truss && s->finished;
 }
 
@@ -112,8 +113,8 @@ void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load
     bool is_end = !is_load_case && hf_store_result_stage(s) != HF_STAGE_FORM;
     if (!point) return;
     hf_warning(messages,
-               "%s: no point of its front is taken: the shape is %s%s. To make point %d a result, run `hifdm run %s "
-               "--point %s:%d -o point%d.h5` with the --set options of the front",
+               "%s: no point of its front is selected, so the shape is %s%s. To make point %d a result, run `hifdm "
+               "run %s --point %s:%d -o point%d.h5` with the --set options of the front",
                file,
                is_end ? "the end of the front with the minimum " : "that of the form-finding, before optimisation",
                is_end ? s->objectives.name[0] : "", point, s->case_path, file, point, point);

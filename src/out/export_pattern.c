@@ -25,11 +25,10 @@ static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, h
     if (pull_ratio > HF_FACET_PULL_MOST)
         return hf_error(
             messages, HF_BAD_USAGE,
-            "%s: there is no far field of this shape: the mesh pulls on %s, and the formula of the pillow ends at "
-            "N l = %g of the tension. Raise the tension of the cables, or lower "
-            "surface.mesh_tension_N_per_m",
+            "%s: this shape has no far field: the mesh pulls on %s, and the formula of the pillow is valid only up to "
+            "N l = %g times the tension. Raise the tension of the cables, or lower surface.mesh_tension_N_per_m",
             file, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
-    return hf_error(messages, HF_BAD_USAGE, "%s: there is no far field of this shape: its case has no surface.pattern",
+    return hf_error(messages, HF_BAD_USAGE, "%s: this shape has no far field, because its case has no surface.pattern",
                     file);
 }
 

@@ -54,8 +54,9 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
     v->sag_m = sag_m;
     if (pull_ratio <= HF_FACET_PULL_MOST) return HF_OK;
     return hf_error(messages, HF_BAD_USAGE,
-                    "%s: the pillows of the %s shape are not known: the mesh pulls on %s, and the formula ends at "
-                    "N l = %g of the tension. Raise the tension of the cables, or lower surface.mesh_tension_N_per_m",
+                    "%s: the pillows of the %s shape are not known: the mesh pulls on %s, and the formula of the "
+                    "pillow is valid only up to N l = %g times the tension. Raise the tension of the cables, or lower "
+                    "surface.mesh_tension_N_per_m",
                     file, s->word, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
 }
 
@@ -243,7 +244,7 @@ static hf_status export_rf(const hf_export_request *o, const hf_export_stored *s
     const hf_surface_settings *surface = &stored->summary.surface;
     if (!(surface->focal_length_m > 0))
         return hf_error(messages, HF_BAD_USAGE,
-                        "%s: its case has no section surface, which says what its facets are of", o->file);
+                        "%s: its case has no section surface, so its facets have no target surface", o->file);
     hf_status status = hf_facets_find(&stored->scene, surface, &v.facets);
     if (status != HF_OK) hf_error(messages, status, "%s: out of memory for its facets", o->file);
     if (status == HF_OK && v.facets.n_facet == 0)

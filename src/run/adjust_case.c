@@ -260,8 +260,8 @@ static hf_status find_prior(job *j, hf_messages *messages)
         largest = fmax(largest, j->prior.sigma_m[e]);
     if (largest > 0) return check_sigmas(j, largest, messages);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: tolerance: cables have no errors that could be estimated; add sigma_cut_m, sigma_cut_ratio, "
-                    "sigma_EA_ratio or sigma_temperature_K",
+                    "%s: tolerance: no cable has errors to estimate; add sigma_cut_m, sigma_cut_ratio, sigma_EA_ratio "
+                    "or sigma_temperature_K",
                     j->path);
 }
 
@@ -273,8 +273,8 @@ static hf_status check_sections(const hf_case *c, const char *path, hf_messages 
     if (!c->has_adjust)
         hf_error(
             messages, HF_BAD_CASE,
-            "%s: has no section adjust: add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001} with the cables that "
-            "have turnbuckles, the range of an adjustment and its step",
+            "%s: has no section adjust. Add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001}: the set of cables "
+            "with turnbuckles, and the range and step of an adjustment",
             path);
     if (!c->has_tolerance)
         hf_error(
@@ -343,17 +343,16 @@ static hf_status check_misfit(const job *j, int row, hf_messages *messages)
     if (chi > FOREIGN)
         return hf_error(
             messages, HF_BAD_CASE,
-            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate instead of 1; the worst "
-            "is node '%s' (line %d), %.3g mm from the nearest possible shape. Look for swapped ids, displaced supports "
-            "(tolerance.sigma_support_m), another design or another load case; if only sigma_m or the sigmas of "
-            "section "
-            "tolerance are wrong, they are wrong by a factor of %.2g",
+            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate, but about 1 is expected. "
+            "The worst node is '%s' (line %d), %.3g mm from the nearest possible shape. Look for swapped ids, "
+            "displaced supports (tolerance.sigma_support_m), another design or another load case. If only sigma_m or "
+            "the sigmas of section tolerance are wrong, they are too small by a factor of %.2g",
             j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3, sqrt(chi));
     hf_warning(
         messages,
-        "%s: these positions do not fit the net and its tolerances: chi^2 is %.3g per coordinate instead of 1; the "
-        "worst is node '%s' (line %d), %.3g mm off. Either sigma_m or a sigma of section tolerance is too small, "
-        "supports are displaced (tolerance.sigma_support_m), or it is another design",
+        "%s: these positions do not fit the net and its tolerances: chi^2 is %.3g per coordinate, but about 1 is "
+        "expected. The worst node is '%s' (line %d), %.3g mm off. Either sigma_m or a sigma of section tolerance is "
+        "too small, supports are displaced (tolerance.sigma_support_m), or the net has another design",
         j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3);
     return HF_OK;
 }

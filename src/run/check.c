@@ -335,7 +335,7 @@ hf_status hf_check_study_points(const hf_study *s, hf_problem *scratch, hf_check
         if (status == HF_NO_MEMORY || status == HF_IO || status == HF_INTERRUPTED) return status;
     }
     if (t->n_fault > HF_FAULT_MAX_POINT)
-        hf_error(messages, HF_BAD_CASE, "%s: sweep: and %d more points with faults", s->path,
+        hf_error(messages, HF_BAD_CASE, "%s: sweep: %d more points have faults", s->path,
                  t->n_fault - HF_FAULT_MAX_POINT);
     return t->first < 0 ? HF_BAD_CASE : HF_OK;
 }

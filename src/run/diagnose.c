@@ -84,8 +84,8 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
         if (w->loose[i]) add_name(&loose, name_node(p, i, name));
     if (r->n_loose)
         hf_warning(messages,
-                   "no taut cable holds these nodes of the %s shape, %d: %s. They are put where their cables allow, as "
-                   "close to their target positions as possible, and psi leaves them out",
+                   "no taut cable holds these nodes of the %s shape (%d): %s. hifdm places them as close to their "
+                   "target positions as their cables allow, and psi does not count them",
                    stage, r->n_loose, close_names(&loose));
     if (r->n_drifting)
         hf_warning(messages,
@@ -113,28 +113,29 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
     if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > p->settings.form.residual_tolerance * m->reference_N)
         hf_warning(
             messages,
-            "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, relative error of cable "
-            "lengths up to %.2e; use stop: residual to iterate to equilibrium",
+            "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, relative error of "
+            "cable lengths up to %.2e. Use stop: residual to iterate to equilibrium",
             stage, r->residual_N, r->length_error);
     if (r->stop_reason == HF_STOPPED_CONVERGED && is_off_by_law(p, r))
         hf_warning(
             messages,
-            "by the laws of the elastic cables, forces of up to %.2e N are out of balance, although the residual "
-            "of the iteration is within form.residual_tolerance: the relative error of lengths is up to %.2e; "
-            "lower form.length_tolerance%s",
+            "with the laws of the elastic cables, residual forces of up to %.2e N remain, although the residual of "
+            "the iteration is within form.residual_tolerance. The relative error of lengths is up to %.2e; lower "
+            "form.length_tolerance%s",
             r->residual_N, r->length_error,
             hf_evaluate_method(m, &p->settings.form, NULL) == HF_METHOD_NEWTON ? "" : ", or use form.method: newton");
     if (r->n_loaded_chain) {
         name_loaded_chains(p, w, &chains);
         hf_warning(messages,
                    "%d straight chains of length-controlled cables carry lateral load, which no finite tension can "
-                   "balance, so the boundary tensions depend on where the iteration stopped: %s",
+                   "balance. The boundary tensions therefore depend on the iteration at which the program stopped: %s",
                    r->n_loaded_chain, close_names(&chains));
     }
     name_loose(p, stage, w, r, messages);
     for (int e = 0; r->n_slack && e < m->n_cable; e++)
         if (hf_metrics_is_slack(m, w, e)) add_name(&slack, p->scene.cable_id[e]);
-    if (r->n_slack) hf_warning(messages, "slack in the %s shape, %d: %s", stage, r->n_slack, close_names(&slack));
+    if (r->n_slack)
+        hf_warning(messages, "slack cables in the %s shape (%d): %s", stage, r->n_slack, close_names(&slack));
 }
 
 /* Returns the cable under law tension or length with the maximum relative deviation from its law. */
@@ -173,22 +174,22 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
     if (r->coupling.stop_reason == HF_COUPLING_MAX_ITERATIONS)
         return hf_error(
             messages, r->status,
-            "the coupling of net and truss did not converge in %d form-findings: an attachment still moves %s; raise "
+            "the coupling of net and truss did not converge in %d form-findings; an attachment still moves %s. Raise "
             "coupling.max_iterations or coupling.tof_m, or lower form.%s, which limits the accuracy of the forces",
             r->coupling.iterations, name_move(&r->coupling, move),
             r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
     if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; with drifting nodes it is a row */
         return hf_error(messages, r->status,
-                        "form-finding is as accurate as double precision allows (nodal residual %.2e N): cable '%s' is "
-                        "%.2e m long at %.2e N, which is too short or too tight for its coordinates; move the origin "
-                        "closer to it, join its nodes or raise the tolerances",
+                        "form-finding has reached the accuracy of double precision (nodal residual %.2e N). Cable "
+                        "'%s' is %.2e m long at %.2e N, which is too short or too tight for its coordinates. Move the "
+                        "origin closer to the cable, join its nodes or raise the tolerances",
                         r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit],
                         w->tension_N[r->culprit]);
     int e = furthest_off(p);
     return hf_error(
         messages, r->status,
-        "form-finding did not converge in %d iteration%s: nodal residual %.2e N, relative error of cable lengths up to "
-        "%.2e; cable '%s' is farthest from its law, at %g N and %g m; raise form.max_iterations or the tolerances",
+        "form-finding did not converge in %d iteration%s: nodal residual %.2e N, relative error of cable lengths up "
+        "to %.2e. Cable '%s' is farthest from its law, at %g N and %g m. Raise form.max_iterations or the tolerances",
         r->iterations, r->iterations == 1 ? "" : "s", r->residual_N, r->length_error, p->scene.cable_id[e],
         w->tension_N[e], w->length_m[e]);
 }
@@ -218,7 +219,8 @@ static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, 
     char move[MOVE_SIZE];
     if (form->coupling.scheme == HF_COUPLING_AUTO && hf_evaluate_method(&p->model, form, NULL) == HF_METHOD_NEWTON)
         return hf_error(messages, r->status,
-                        "the truss is too soft for its net: together they have no shape; stiffen the truss (%s) or %s",
+                        "the truss is too soft for its net: net and truss together have no equilibrium. Stiffen the "
+                        "truss (%s) or %s",
                         stiffen, name_pull(p));
     const char *other = p->model.has_newton
                             ? ", or solve both in one matrix: coupling.scheme: auto, form.method: newton"
@@ -226,7 +228,7 @@ static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, 
                                                                      : "";
     return hf_error(messages, r->status,
                     "the truss is too soft for the coupling with its net: after %d form-findings an attachment still "
-                    "moves %s; stiffen the truss (%s), %s%s",
+                    "moves %s. Stiffen the truss (%s), %s%s",
                     c->iterations, name_move(c, move), stiffen, name_pull(p), other);
 }
 
@@ -272,8 +274,8 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
     case HF_COLLAPSED:
         return hf_error(
             messages, r->status,
-            "ill-posed: the net collapses at cable '%s', whose length fell below %g of its length at the target "
-            "positions: check the tensions, lengths and supports near it",
+            "ill-posed: the net collapses at cable '%s', whose length fell below %g times its length at the target "
+            "positions. Check the tensions, lengths and supports near it",
             p->scene.cable_id[r->culprit], p->settings.form.collapse_ratio);
     case HF_NOT_FINITE:
         if (r->culprit < 0) return hf_error(messages, r->status, "ill-posed: a tension is no longer a finite number");
@@ -529,7 +531,8 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
         has_fault |= is_front || !is_reached;
         if (is_front || !is_reached)
             hf_error(messages, HF_BAD_CASE,
-                     "%s: no design variable of this case changes %s: %s; add one that does, or leave the row out",
+                     "%s: no design variable of this case changes %s: %s. Add a design variable that does, or remove "
+                     "the row",
                      place, name, why);
         else
             hf_warning(messages, "%s: no design variable of this case changes %s: %s", place, name, why);
@@ -545,7 +548,7 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
         if (q->now.variable_row[i])
             hf_warning(
                 messages,
-                "%s: changes nothing at the initial design, because its cables, or those at its supports, are slack",
+                "%s: has no effect at the initial design, because its cables or the cables at its supports are slack",
                 hf_messages_location(messages, place, "optimize.variables.%d", i));
     for (int i = 0; i < o->n_limit; i++)
         if (q->now.limit[i])
@@ -557,7 +560,8 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
     if (!q->now.psi) return HF_OK;
     return hf_error(
         messages, HF_BAD_CASE,
-        "%s: no design variable of this case changes psi: %s; add one that does, or use another optimize.objective",
+        "%s: no design variable of this case changes psi: %s. Add a design variable that does, or use another "
+        "optimize.objective",
         hf_messages_location(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
         why_objective(HF_FIGURE_PSI));
 }
@@ -722,8 +726,9 @@ void hf_result_doubt_truss(const hf_problem *p, const hf_carrier_state *truss, c
     if (off_m > fmax(SECOND_ORDER_DOUBT * span_m, SECOND_ORDER_PSI * psi_m))
         hf_warning(
             messages,
-            "truss: its attachments deflect so far (%.3g mm in the result) that its linear theory may have an error of "
-            "about %.2g mm: stiffen the truss (tubes of larger diameter, more bays) or lower form.pretension_N",
+            "truss: the attachments deflect by %.3g mm in the result, so the linear theory of the truss may have an "
+            "error of about %.2g mm. Stiffen the truss (tubes of larger diameter, more bays) or lower "
+            "form.pretension_N",
             move_m * 1e3, off_m * 1e3);
 }
 

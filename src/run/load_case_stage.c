@@ -178,7 +178,7 @@ static void warn(const hf_load_case_summary *s, hf_messages *messages)
 {
     const hf_form_result *r = &s->result;
     if (r->status != HF_OK)
-        hf_warning(messages, "load_cases: the net has no shape in load case '%s': %s", s->name,
+        hf_warning(messages, "load_cases: no equilibrium was found in load case '%s': %s", s->name,
                    hf_status_text(r->status));
     else if (r->n_slack)
         hf_warning(messages, "load_cases: in load case '%s', %d cable%s slack and %d node%s loose", s->name, r->n_slack,

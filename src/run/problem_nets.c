@@ -35,7 +35,8 @@ static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_
     if (status == HF_OK && n_sample > 0 && c->tolerance.n_truss > 0)
         status = hf_load_case_stage_rest_by_heat(p, q->truss_move_m_per_K);
     if (status != HF_OK)
-        return hf_error(messages, status, "the truss of the nets of the objectives: %s", hf_status_text(status));
+        return hf_error(messages, status, "the truss of the as-built nets of the objectives: %s",
+                        hf_status_text(status));
     hf_built_nets_make(&p->scene, &p->model, &c->form, has_load_cases ? &p->load_cases : NULL,
                        is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL, &heat, n_sample,
                        &q->nets);

@@ -89,8 +89,8 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     if (n_dark > 0)
         return hf_error(
             messages, HF_BAD_CASE,
-            "%s: from (%g, %g, %g) m the feed illuminates %d of %d facets from behind or not at all; it must "
-            "be above all facets and aim at them",
+            "%s: from (%g, %g, %g) m the feed illuminates %d of %d facets from behind or not at all; the feed must be "
+            "above all facets and aim at them",
             place, feed.position_m[0], feed.position_m[1], feed.position_m[2], n_dark, p->facets.n_facet);
     if (hf_facet_measure(&p->surface, &p->facets, &theory, &m) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
@@ -101,8 +101,8 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     if (loss_dB > FACET_LOSS_MOST_DB)
         hf_warning(
             messages,
-            "surface.pattern: at %g GHz the facets are coarse: even at the target positions their half-path error is "
-            "%.3g mm RMS, which loses %s into lobes of their own. About %.0f facets instead of %d would lose %g dB",
+            "surface.pattern: at %g GHz the facets are coarse. Even at the target positions their half-path error is "
+            "%.3g mm RMS, a loss of %s to grating lobes. A net of about %.0f facets instead of %d would lose %g dB",
             most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss,
             ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
     return HF_OK;
@@ -114,7 +114,8 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the facets of a net of %d nodes", p->scene.n_node);
     if (!p->facets.is_planar)
         hf_warning(messages,
-                   "surface: cables on it cross without a node, as seen along z, so there are no facets to measure");
+                   "surface: seen along z, cables of the surface cross without a common node, so there are no facets "
+                   "to measure");
     else if (p->facets.n_facet == 0)
         hf_warning(messages, "surface: the net has no facets, so errors and losses are those of the nodes alone");
     return p->surface.has_pattern ? check_pattern(p, messages) : HF_OK;
@@ -152,7 +153,8 @@ static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_m
     if (!source) return hf_config_scene(&p->settings, &p->scene, messages);
     if (!p->settings.has_import || *p->settings.facets_path)
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: a net of arrays needs a section scene with an import of nodes and cables, and no facets",
+                        "%s: a net from arrays needs a section scene with an import of nodes and cables, and no "
+                        "facets",
                         p->settings.path);
     HF_TRY(hf_scene_from_arrays(source->net, p->settings.EA_N, &p->scene, messages));
     HF_TRY(hf_scene_check(&p->scene, messages));
@@ -295,8 +297,8 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
     bool is_row = p->model.variable, is_cable = p->model.variable_cable[k] >= 0;
     if (is_cable && !(base > 0))
         return hf_error(messages, HF_NO_FEASIBLE,
-                        "optimize: %s '%s' has no tension after form-finding from which to start; give it a shorter "
-                        "length, or a law that keeps it taut",
+                        "optimize: %s '%s' has no tension after form-finding, so the search cannot start. Give it a "
+                        "shorter length, or a law that keeps it taut",
                         is_row ? "cable" : "boundary cable", name);
     if (is_row)
         hf_messages_location(messages, where, "optimize.variables.%d", p->model.variable[k].setting);
@@ -311,7 +313,7 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
     hf_variables_bound(o, &p->model, k, base, &lower, &upper, &reach);
     if (is_row && is_cable && !(upper > 0))
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: the bounds leave '%s' no value above 0 %s, but a cable needs a tension and a length",
+                        "%s: the bounds of '%s' allow no value above 0 %s, but a cable needs a tension and a length",
                         where, name, hf_model_variable_unit(&p->model, k));
     if (is_row && (base + reach < lower || base - reach > upper))
         return hf_error(
@@ -351,7 +353,7 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
     if (c->optimize.n_front == 0 || (p->load_cases.n == 0 && !c->has_tolerance)) return;
     hf_warning(
         messages,
-        "optimize.front: a front is no single design, so %s%s%s belong to the net of the form-finding, before "
+        "optimize.front: a front is not a single design, so %s%s%s belong to the net of the form-finding, before "
         "optimisation. To compute them for point N of the front, run `hifdm run %s --point FRONT.h5:N -o point.h5`",
         p->load_cases.n ? "load_cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
         c->has_tolerance ? "tolerance" : "", c->path);
@@ -408,6 +410,6 @@ hf_status hf_problem_share(hf_problem *p, hf_messages *messages)
     p->solver = HF_SOLVER_AUTO;
     if (n_taut > 0 && n_taut == p->model.n_variable) p->solver = hf_batch_share(&p->batch, p->initial);
     if (!p->batch.lacks_memory) return HF_OK;
-    return hf_error(messages, HF_NO_MEMORY, "out of memory for what designs of a net of %d nodes share",
+    return hf_error(messages, HF_NO_MEMORY, "out of memory for the data that all designs of a net of %d nodes share",
                     p->model.n_node);
 }

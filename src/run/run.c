@@ -63,7 +63,7 @@ static hf_status prepare(hf_run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(hf_problem_load(q->case_path, q->source, q->set, q->n_set, r->request->control.stop_requested, &r->problem,
                            messages));
     if (settings->has_sweep && !part->of_sweep)
-        return hf_error(messages, HF_BAD_USAGE, "%s: has a section sweep; run it by 'hifdm sweep %s'", q->case_path,
+        return hf_error(messages, HF_BAD_USAGE, "%s: has a section sweep; run it with 'hifdm sweep %s'", q->case_path,
                         q->case_path);
     HF_TRY(hf_tolerance_stage_check(&r->problem, part->of_tolerance, messages));
     if (q->seed) settings->optimize.seed = *q->seed;
@@ -210,7 +210,7 @@ static hf_status execute(hf_run *r, hf_summary *s, hf_messages *messages)
     hf_status status = run_stages(r, s, messages);
     bool has_design_alone = keeps_design(r, status);
     if (hf_tolerance_stage_is_task(r->request) || !(leaves_result(status) || has_design_alone)) return status;
-    if (has_design_alone) hf_warning(messages, "tolerance: the result has the design alone, without samples");
+    if (has_design_alone) hf_warning(messages, "tolerance: the result has only the design, without samples");
     return finish(r, s, status, messages);
 }
 

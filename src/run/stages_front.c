@@ -29,7 +29,7 @@ static void warn_of_front_steps(const hf_front *front, int max_iterations, hf_me
     if (n > 0)
         hf_warning(
             messages,
-            "optimize.front: %d of %d points of the front are not converged after %d steps: they have no slope, and "
+            "optimize.front: %d of %d points of the front have not converged after %d steps. They have no slope, and "
             "better designs exist near them; raise optimize.refine_steps",
             n, front->n_point, max_iterations);
 }

@@ -63,14 +63,14 @@ static void doubt_pattern(const hf_pattern_settings *s, const hf_pattern_summary
     if (to->figure[first].doubt == HF_CUT_AT_END)
         hf_warning(messages,
                    "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, the maximum gain is "
-                   "at the end "
-                   "of theta_deg: the beam may be outside, and its width and sidelobes are unknown; widen theta_deg",
+                   "at the end of theta_deg. The beam may be outside, so its width and sidelobes are unknown; widen "
+                   "theta_deg",
                    n, n_all, hf_stage_word[stage], phi_deg, GHz);
     else
         hf_warning(messages,
-                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, steps of %.3g deg are "
-                   "coarse: fewer than %g steps are within the width of the beam. Its maximum may be missed, and width "
-                   "and sidelobes are unknown; raise n_theta, or narrow theta_deg",
+                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, steps of %.3g deg "
+                   "are coarse: fewer than %g steps are within the width of the beam. The maximum gain may be missed, "
+                   "and the width and sidelobes are unknown; raise n_theta, or narrow theta_deg",
                    n, n_all, hf_stage_word[stage], phi_deg, GHz, (s->theta_deg[1] - s->theta_deg[0]) / (s->n_theta - 1),
                    HF_PATTERN_WIDTH_STEPS);
 }

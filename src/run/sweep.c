@@ -234,7 +234,7 @@ static hf_status run_points(sweep *w)
     if (w->fatal != HF_OK)
         return hf_error(
             w->messages, w->fatal,
-            "the sweep stops: %d points are missing, and none of them counts as failed; remove the cause, then "
+            "the sweep has stopped: %d points are missing, and none of them counts as failed. Remove the cause, then "
             "run the same command again to resume",
             left);
     if (left)

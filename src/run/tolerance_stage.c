@@ -123,8 +123,8 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
         hf_config_location(&p->settings, key, place, sizeof place);
         return hf_error(
             messages, HF_BAD_CASE,
-            "%s: cable '%s' is %.3g m long, and errors of cutting and temperature (%d standard deviations) may "
-            "change its length by a factor of %.3g, but the maximum is 0.5: use smaller errors",
+            "%s: cable '%s' is %.3g m long, and errors of cutting and temperature (%d standard deviations) may change "
+            "its length by %.3g times its value, but the maximum is 0.5 times; use smaller errors",
             place, s->cable_id[e], length, LARGEST_NUMBER, by_cut + by_ratio + by_heat);
     }
     return HF_OK;
@@ -327,8 +327,8 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
-                     "tolerance: the net of the design is not stiff without errors: the position of some node is not "
-                     "unique");
+                     "tolerance: the net of the design is not stiff even without errors: the position of some node is "
+                     "not unique");
     }
     hf_material_free(&material);
     hf_arena_free(&arena);

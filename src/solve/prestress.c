@@ -298,9 +298,9 @@ static hf_status name_unheld(const programme *p, const hf_scene *scene, hf_messa
     if (n > 5) snprintf(more, sizeof more, " and %d more", n - 5);
     return hf_error(
         messages, HF_BAD_CASE,
-        "form.prestress: exact: no tensions above zero hold %d of the %d free nodes at their target "
-        "positions: %s%s. Each lacks a cable that pulls it back onto the surface: tie it to a second net, or "
-        "allow other positions (form.prestress: given)",
+        "form.prestress: exact: no tensions above zero hold %d of the %d free nodes at their target positions: %s%s. "
+        "Each of these nodes lacks a cable that pulls it back onto the surface. Tie it to a second net, or allow "
+        "other positions (form.prestress: given)",
         n, m->n_free, names, more);
 }
 

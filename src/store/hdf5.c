@@ -90,8 +90,8 @@ void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *att
     io->is_damaged = true;
     io->status =
         hf_error(io->messages, HF_IO,
-                 "%s: was made by hifdm %s and has no %s, which this version needs: run its case again, or use "
-                 "that version for it",
+                 "%s: was written by hifdm %s and has no %s, which this version needs. Run its case again, or read it "
+                 "with that version",
                  io->path, io->made_by, where);
 }
 

@@ -52,20 +52,21 @@ static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
             j->file = -1;
             errno = why;
             if (lock == HF_LOCK_FAILED) return fail(j, "lock", j->path, messages);
-            return hf_error(messages, HF_EXISTS, "%s: another process is writing it (it holds the lock of %s)",
+            return hf_error(messages, HF_EXISTS,
+                            "%s: another process is writing it (that process holds the lock of "
+                            "%s)",
                             j->result, j->path);
         }
         if (lock == HF_LOCK_NONE && i == 0)
             hf_warning(messages,
-                       "%s: this file system has no locks (%s): nothing keeps a second process from this result, so "
-                       "start none",
+                       "%s: this file system has no locks (%s), so hifdm cannot keep a second process from writing "
+                       "this result. Do not start one",
                        j->result, strerror(errno));
         if (hf_path_leads_to(j->path, j->file)) return HF_OK;
         close(j->file); /* its owner rotated or removed it between open and lock */
         j->file = -1;
     }
-    return hf_error(messages, HF_EXISTS, "%s: %s changes all the time; is another process writing it?", j->result,
-                    j->path);
+    return hf_error(messages, HF_EXISTS, "%s: %s keeps changing. Is another process writing it?", j->result, j->path);
 }
 
 typedef enum { JOURNAL, OTHER_VERSION, FOREIGN } content;
@@ -97,7 +98,7 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
     HF_TRY(look_at_head(j, &is, messages));
     if (is != JOURNAL && replaces) { /* unlink, not truncate: the name may be a link to another file */
         if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
-        hf_warning(messages, "%s: %s was no journal of hifdm; it is replaced", result, j->path);
+        hf_warning(messages, "%s: %s was not a journal of hifdm and is replaced", result, j->path);
         if (j->file >= 0) close(j->file);
         HF_TRY(open_and_lock(j, messages));
         HF_TRY(look_at_head(j, &is, messages));
@@ -108,11 +109,11 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
     if (is == OTHER_VERSION)
         return hf_error(messages, HF_EXISTS,
                         "%s: %s is a journal of another version of hifdm; finish the run with that version, or "
-                        "restart it with --restart (of a sweep: --retry failed)",
+                        "restart it with --restart (in a sweep: --retry failed)",
                         result, j->path);
     return hf_error(messages, HF_EXISTS,
-                    "%s: %s is no journal of hifdm, and in the way; delete it, use --restart (of a sweep: --retry "
-                    "failed) to replace both or -o to choose another name",
+                    "%s: %s is not a journal of hifdm, but has the name of one. Delete it, use --restart (in a sweep: "
+                    "--retry failed) to replace both files, or use -o to choose another name",
                     result, j->path);
 }
 
@@ -282,8 +283,8 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     bool is_ours = got && strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) == 0;
     if (!is_ours && info.st_size > HEADER_BYTES)
         return hf_error(messages, HF_EXISTS,
-                        "%s: %s is of another case; delete it, put the right one there, or restart the run with "
-                        "--restart (of a sweep: --retry failed)",
+                        "%s: %s belongs to another case. Delete it, put the right journal there, or restart the run "
+                        "with --restart (in a sweep: --retry failed)",
                         j->result, j->path);
     if (!is_ours) return hf_journal_restart(j, identity, messages);
     snprintf(j->identity, sizeof j->identity, "%s", identity);
@@ -300,7 +301,7 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     if (got < 0 && errno == ENOMEM) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", j->result);
     if (got < 0) return fail(j, "read", j->path, messages);
     if (is_damaged)
-        hf_warning(messages, "%s: %s is damaged: its last %lld bytes count for nothing", j->result, j->path,
+        hf_warning(messages, "%s: %s is damaged: its last %lld bytes are ignored", j->result, j->path,
                    (long long)(info.st_size - at));
     if (hf_file_io_cut(j->file, at) != 0 || lseek(j->file, at, SEEK_SET) < 0)
         return fail(j, "write", j->path, messages);

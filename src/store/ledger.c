@@ -80,8 +80,7 @@ hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages
     snprintf(path, sizeof path, "%s/claims", folder);
     l->claims = hf_file_out_keep(path, &was_there);
     if (l->claims < 0 && errno == EEXIST)
-        return hf_error(messages, HF_IO, "%s: is a link, a folder or no ordinary file, and in the way; remove it",
-                        path);
+        return hf_error(messages, HF_IO, "%s: is a link, a folder or another special file; remove it", path);
     if (l->claims < 0) return hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
     return HF_OK;
 }
@@ -307,7 +306,7 @@ static bool read_rows(reading *r, char *text)
 
 static hf_status tell_in_the_way(const char *path, hf_messages *messages)
 {
-    return hf_error(messages, HF_IO, "%s: is a folder or no ordinary file, and in the way; remove it", path);
+    return hf_error(messages, HF_IO, "%s: is a folder or another special file; remove it", path);
 }
 
 /* Reads what the file holds now as a text, which the caller frees. Rows that are added meanwhile are left out. */
@@ -324,7 +323,7 @@ static hf_status read_text(const char *path, char **text, hf_messages *messages)
     int why = errno;
     close(file);
     if (size > ROWS_MAX)
-        return hf_error(messages, HF_IO, "%s: is longer than %lld MB, so no table of hifdm, and in the way; remove it",
+        return hf_error(messages, HF_IO, "%s: is not a table of hifdm, because it is longer than %lld MB; remove it",
                         path, (long long)ROWS_MAX / 1000000);
     if (!*text) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     (*text)[n < 0 ? 0 : n] = '\0';
@@ -496,7 +495,7 @@ static hf_status find_lost(reading *r, const char *folder, hf_messages *messages
         if (p->state != HF_POINT_DONE) continue;
         hf_ledger_content content = hf_ledger_file(folder, r->study, i, path);
         if (content == HF_LEDGER_UNSEEN)
-            return hf_error(messages, HF_IO, "%s: cannot look at it: %s", path, strerror(errno));
+            return hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
         if (content == HF_LEDGER_FILE && !hf_journal_is_there(path)) continue;
         *p = r->failure[i];
         r->points->n_lost += p->state == HF_POINT_MISSING;

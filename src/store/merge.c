@@ -262,10 +262,10 @@ static void write_links(merger *m, const char *folder)
         const char *id = m->study->id[i];
         hf_ledger_content content = hf_ledger_file(folder, m->study, i, file);
         if (content == HF_LEDGER_UNSEEN)
-            m->io.status = hf_error(m->io.messages, HF_IO, "%s: cannot look at it: %s", file, strerror(errno));
+            m->io.status = hf_error(m->io.messages, HF_IO, "%s: cannot get its status: %s", file, strerror(errno));
         else if (content == HF_LEDGER_FILE && !is_known)
             m->io.status =
-                hf_error(m->io.messages, HF_IO, "%s: cannot make links to %s: %s", m->io.path, folder, strerror(why));
+                hf_error(m->io.messages, HF_IO, "%s: cannot create links to %s: %s", m->io.path, folder, strerror(why));
         if (content != HF_LEDGER_FILE || !is_known) continue;
         snprintf(target + n, sizeof target - n, "/%s", hf_path_name(file));
         if (H5Lcreate_external(target, "/", group, id, H5P_DEFAULT, H5P_DEFAULT) < 0)
@@ -340,11 +340,15 @@ static hf_status check_output(const char *path, hf_messages *messages)
     hf_status tried = hf_hdf5_try(look_at_output, NULL, path, how, sizeof how, messages);
     if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
-                        "%s: exists and is damaged: reading it ended by %s; use --force or -o to choose another name",
+                        "%s: exists and is damaged: the process that read it was ended by %s; use --force to replace "
+                        "it or -o to choose another name",
                         path, how);
     HF_TRY(tried);
     if (is_replaceable(path)) return HF_OK;
-    return hf_error(messages, HF_EXISTS, "%s: exists and is no merge; use --force or -o", path);
+    return hf_error(messages, HF_EXISTS,
+                    "%s: exists and is not a merged study; use --force to replace it or -o to "
+                    "choose another name",
+                    path);
 }
 
 /* Returns 1 if the file belongs to the sweep: if it is the result of a point, also by a link, or lies in the folder of

@@ -48,8 +48,8 @@ static hf_status take_chunk(void *context, int chunk, const void *payload, size_
     if (chunk >= 0 && chunk < s->n_all) hf_samples_first(s, chunk, &n);
     if (n == 0 || bytes != (size_t)n * ROW_BYTES)
         return hf_error(s->messages, HF_EXISTS,
-                        "%s: its journal has %zu bytes of chunk %d, which this case has not; "
-                        "delete it, or restart the run with --restart",
+                        "%s: its journal has %zu bytes of chunk %d, which this case does not have. Delete the "
+                        "journal, or restart the run with --restart",
                         s->name, bytes, chunk);
     return keep_rows(s, chunk, payload);
 }

@@ -26,10 +26,10 @@ hf_status hf_store_file_check(const char *path, hf_messages *messages)
     struct stat info;
     if (lstat(path, &info) == 0 && stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         return hf_error(messages, HF_EXISTS, "%s: is %s; use -o to choose a file name", path,
-                        S_ISDIR(info.st_mode) ? "a folder" : "not an ordinary file");
+                        S_ISDIR(info.st_mode) ? "a folder" : "not a regular file");
     hf_path_folder(path, folder, sizeof folder);
     if (!*path || stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
-        return hf_error(messages, HF_IO, "%s: there is no folder %s; make it or use -o to choose another name", path,
+        return hf_error(messages, HF_IO, "%s: there is no folder %s; create it or use -o to choose another name", path,
                         folder);
     if (access(folder, W_OK | X_OK) != 0)
         return hf_error(messages, HF_IO, "%s: cannot write into the folder %s: %s; use -o to choose another name", path,
@@ -170,9 +170,10 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
         words = "; this run's result is ";
     }
     if (is_taken)
-        f->io.status =
-            hf_error(f->io.messages, HF_EXISTS, "%s: was made, replaced or removed by someone else during the run%s%s",
-                     f->out.path, words, kept);
+        f->io.status = hf_error(f->io.messages, HF_EXISTS,
+                                "%s: was created, replaced or removed by another process during the "
+                                "run%s%s",
+                                f->out.path, words, kept);
     else
         f->io.status =
             hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->out.path, why, words, kept);
@@ -199,11 +200,11 @@ hf_status hf_store_file_demand_room(hf_store_file *f, hf_messages *messages)
         f->earlier = seen ? HF_EARLIER_NONE : HF_EARLIER_THERE;
         return HF_OK;
     }
-    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot look at it: %s", name, strerror(errno));
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot get its status: %s", name, strerror(errno));
     if (seen == 0 || is_earlier(name, f->out.path)) return HF_OK;
     return hf_error(messages, HF_EXISTS,
-                    "%s: this name is for the earlier result until the new one is finished; remove the file or give it "
-                    "another name",
+                    "%s: this name is reserved for the earlier result until the new one is finished; remove the file "
+                    "or rename it",
                     name);
 }
 

@@ -46,12 +46,12 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     hf_hdf5_open_file(&io, path);
     if (io.status != HF_OK) return io;
     if (!is_ours(&io, &io.is_damaged))
-        io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but no result of hifdm or a damaged one", path);
+        io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but it is damaged or not a result of hifdm", path);
     hf_hdf5_get(&io, io.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
     if (version == HF_FORMAT_0_2) io.alias = hf_renamed;
     if (io.status == HF_OK && version != HF_FORMAT_VERSION && version != HF_FORMAT_0_2) {
         io.is_damaged = true;
-        io.status = hf_error(messages, HF_IO, "%s: is of format version %d, this program reads version %d", path,
+        io.status = hf_error(messages, HF_IO, "%s: has format version %d, but this program reads version %d", path,
                              version, HF_FORMAT_VERSION);
     }
     note_version(&io);
@@ -84,8 +84,8 @@ static void get_status(hf_hdf5 *io, hf_summary *s)
 hf_status hf_store_fail_damaged(const char *path, hf_messages *messages)
 {
     return hf_error(messages, HF_EXISTS,
-                    "%s: is damaged or of another version; use --restart (of a sweep: --retry failed) to replace it or "
-                    "-o to choose another name",
+                    "%s: is damaged or of another version; use --restart (in a sweep: --retry failed) to replace it "
+                    "or -o to choose another name",
                     path);
 }
 
@@ -315,9 +315,8 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss") && io.status == HF_OK)
         io.status = hf_error(messages, HF_IO, "%s: has no truss: its case has no truss section", path);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss/node") && io.status == HF_OK)
-        io.status =
-            hf_error(messages, HF_IO,
-                     "%s: is unfinished, and its truss is stored at the end of the run; resume the run first", path);
+        io.status = hf_error(messages, HF_IO,
+                             "%s: is unfinished, and a run stores its truss at the end; resume the run first", path);
     if (io.status == HF_OK) hf_layout_read_truss(&io, truss, state);
     hf_store_close_result(&io);
     if (io.status != HF_OK) {

@@ -298,8 +298,8 @@ static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
     int dof = 0, n_support = 0;
     if (row < 0)
         return hf_error(messages, HF_MECHANISM,
-                        "truss: its stiffness matrix cannot be factored: the truss is a mechanism, not held by enough "
-                        "supports, or the stiffness of a member is out of all range");
+                        "truss: the stiffness matrix cannot be factored. The truss is a mechanism, has too few "
+                        "supports, or has a member whose stiffness is out of range");
     for (int k = 0; k < HF_TRUSS_DOF * t->n_node; k++)
         if (f->row_of_dof[k] == row) dof = k;
     for (int i = 0; i < t->n_node; i++)
@@ -353,7 +353,7 @@ static hf_status build(const hf_truss *truss, int *row_of_dof, int *order, hf_fr
     if (status != HF_OK) return no_memory(truss, messages);
     f->n_dof = give_rows(order, n_ordered, row_of_dof);
     f->half_bandwidth = find_half_bandwidth(f, row_of_dof);
-    if (f->n_dof == 0) return hf_error(messages, HF_BAD_CASE, "truss: every node is supported: nothing can deform");
+    if (f->n_dof == 0) return hf_error(messages, HF_BAD_CASE, "truss: every node is supported, so nothing can deform");
     if ((double)f->n_dof * (f->half_bandwidth + 1.0) > INT_MAX)
         return hf_error(messages, HF_NO_MEMORY, "the stiffness matrix of %d rows, half-bandwidth %d is too large",
                         f->n_dof, f->half_bandwidth);

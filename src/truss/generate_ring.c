@@ -168,6 +168,6 @@ hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_par
     if (status != HF_OK) return hf_error(messages, status, "truss: out of memory for a ring of %d joints", 2 * g.n);
     if (is_whole) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "truss.ring.cells_per_bay: of %d must divide the %d cells at the rim into three bays or more",
+                    "truss.ring.cells_per_bay: %d must divide the %d cells at the rim into at least three bays",
                     g.cells, g.n);
 }

@@ -174,8 +174,7 @@ static hf_status generate(generator *g, hf_messages *messages)
     for (int i = 0; i <= m[0]; i++)
         count_unit(unit_of(g->set, line_unit(g->set, i, m[0])), m[1], &n_node, &n_member);
     if (n_node > TRUSS_NODE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "truss: %.0f nodes are more than this program takes (%d)", n_node,
-                        TRUSS_NODE_MAX);
+        return hf_error(messages, HF_BAD_CASE, "truss: %.0f nodes exceed the maximum of %d", n_node, TRUSS_NODE_MAX);
     hf_cylinder ribs = *g->c;
     ribs.cells_per_module[0] = g->set->bud.panels;
     ribs.cells_per_module[1] = 1;

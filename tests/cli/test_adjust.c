@@ -339,11 +339,11 @@ START_TEST(the_design_is_that_of_a_result)
     assert_nothing_is_wrong(path, result, "1e-9");
     const char *measured = temp("m.csv");
     HIFDM(2, "adjust", path, "--measured", measured);
-    ERR("has a section optimize: use --result FILE with the result by which the net was cut");
+    ERR("has a section optimize. Use --result FILE with the result from which the net was cut");
     HIFDM(2, "adjust", path, "--measured", measured, "--stage", "refine");
-    ERR("--stage needs --result FILE, a result of this case, unless it is form");
+    ERR("--stage needs --result FILE with a result of this case, except --stage form");
     HIFDM(0, "adjust", path, "--measured", measured, "--stage", "form");
-    ERR("or it is another design");
+    ERR("or the net has another design");
     const char *page = temp("moves.html");
     HIFDM(0, "adjust", path, "--measured", measured, "--result", result, "--report", page);
     OUT("report page: ");
@@ -358,11 +358,11 @@ START_TEST(the_design_is_that_of_a_result)
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--report", "a", "-o", "a");
     ERR("-o and --report both name a: use different names");
     HIFDM(2, "adjust", path, "--measured", measured, "--stage", "form", "--report", page, "--force");
-    ERR("needs --result FILE, the result of this case");
+    ERR("needs --result FILE with the result of this case");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--stage", "search");
     ERR("this run has no search shape");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--set", "scene.EA_inner_N=46000");
-    ERR("is the result of another net than");
+    ERR("this result belongs to another net than");
     ERR("they differ in EA of cables");
     HIFDM(5, "adjust", path, "--measured", measured, "--result", measured);
     HIFDM(5, "adjust", path, "--measured", measured, "--result", result, "-o", result, "--force");
@@ -392,7 +392,7 @@ START_TEST(bad_tables_are_named)
     ERR("is 300 mm from its position in the design");
     bad = measured_with("m.csv", HEADER, two_nodes, "");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERR("has 2 free nodes of the net, but at least 3 are needed");
+    ERR("has positions of 2 free nodes, but at least 3 are needed");
     HIFDM(2, "adjust", path, "--measured", file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,-1\nn2_2,0,0,zero,1\n"));
     ERR("sigma_m must be above zero");
     bad = file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,1e-12\nn1_2,0,0,0,1\nn1_3,0,0,0,1\n");
@@ -422,17 +422,17 @@ START_TEST(doubtful_tables_are_told)
     ck_assert_ptr_null(strstr(said.out, "do not trust"));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5");
     ERR("these positions do not fit the net and its tolerances: chi^2 is ");
-    ERR("the worst is node '");
+    ERR("The worst node is '");
     ck_assert_ptr_eq(strstr(said.out, "the measurement does not fit this net: do not trust the adjustments below"),
                      said.out);
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5", "--json");
     OUT("\"fits\": false");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=1e-5", "-o", temp("none.csv"));
     ERR("this measurement does not belong to this net: chi^2 is ");
-    ERR("the worst is node '");
+    ERR("The worst node is '");
     ck_assert(!is_there(temp("none.csv")));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=0.1");
-    ERR("these positions are of almost no use");
+    ERR("makes these positions almost useless");
 }
 END_TEST
 
@@ -515,7 +515,7 @@ START_TEST(bad_cases_are_named)
     ERR("surface needs a target surface: add a section surface");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_cut_m=0", "--set",
           "tolerance.sigma_support_m=1e-4");
-    ERR("cables have no errors that could be estimated");
+    ERR("no cable has errors to estimate");
     HIFDM(2, "adjust",
           file_with("case.yaml", EA_SCENE "tolerance: {sigma_cut_m: 0.0001}\n"
                                           "adjust: {set: inner, range_m: 0.002, step_m: 0.0001}\n"),

@@ -128,7 +128,7 @@ START_TEST(rows_that_the_net_cannot_serve_have_their_places)
                                         "    {figure: tension, set: tie, target: 1}, {figure: facets}]\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     ERRS("error: %s:6:13: optimize.variables.0.set: there is no set of cables 'egde'; did you mean 'edge'?\n", path);
-    ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is varied by row 1 already\n", path);
+    ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is already varied by row 1\n", path);
     ERRS("error: %s:11:26: optimize.variables.3.vary: cable 'n1_0-n1_1' of set inner has law tension: only cables of "
          "law elastic have an unstressed length\n",
          path);
@@ -207,7 +207,7 @@ START_TEST(what_is_no_file_is_told)
     HIFDM(2, "run", temp("missing.yaml"), NOWHERE);
     ERRS("error: %s: cannot open: No such file or directory\n", temp("missing.yaml"));
     HIFDM(2, "run", temp("."), NOWHERE);
-    ERR(": is a folder; name an ordinary file\n");
+    ERR(": is a folder; name a regular file\n");
     HIFDM(2, "run", "", NOWHERE);
     ERR("error: ");
     HIFDM(2, "check",
@@ -216,7 +216,7 @@ START_TEST(what_is_no_file_is_told)
     ERR("YAML: control characters are not allowed\n");
     SHELL(0, "head -c 2000000 /dev/zero | tr '\\0' x >\"$1\"; rm \"$2\"", temp("long.yaml"), temp("binary.yaml"));
     HIFDM(2, "check", temp("long.yaml"));
-    ERR("longer than 1024 kB, so no case file\n");
+    ERR("is not a case file, because it is longer than 1024 kB\n");
     SHELL(0, "rm \"$1\"", temp("long.yaml"));
     SHELL(2, "\"$0\" check - </dev/null"); /* '-' is a file name like any other */
     ERR("error: -: cannot open: No such file or directory\n");
@@ -259,9 +259,9 @@ START_TEST(what_is_no_ordinary_file_is_refused)
     const char *folder = temp("");
     make_readers();
     SHELL(0, "cd \"$1\" && mkfifo pipe && mkdir folder && truncate -s 1073741825 long", folder);
-    static const char *const file[][2] = {{"pipe", "is a pipe; name an ordinary file"},
-                                          {"folder", "is a folder; name an ordinary file"},
-                                          {"/dev/zero", "is a device; name an ordinary file"},
+    static const char *const file[][2] = {{"pipe", "is a pipe; name a regular file"},
+                                          {"folder", "is a folder; name a regular file"},
+                                          {"/dev/zero", "is a device; name a regular file"},
                                           {"long", "is longer than 1024 MB"}};
     SHELL(0, read_it, folder, file[_i][0], file[_i][1]);
     ck_assert_str_eq(said.out, "");

@@ -59,9 +59,9 @@ static const struct {
      "error: @nodes.csv:1: there is a header, but no rows\n"
      "error: @cables.csv:1: the file is empty: a header line is needed\n"},
     {"id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,support\n", "id,i,j,group,law,value\nab,a,b,inner,tension,1\n",
-     "error: scene: every node is a support: there is nothing to find\n"},
+     "error: scene: every node is a support, so there is no shape to find\n"},
     {"id,x_m,y_m,z_m,role\na,0,0,0,inner\nb,1,0,0,inner\n", "id,i,j,group,law,value\nab,a,b,inner,tension,1\n",
-     "error: scene: no node has the role 'support': nothing holds the net; give that role to the nodes that do not "
+     "error: scene: no node has the role 'support', so nothing holds the net; give that role to the nodes that do not "
      "move\n"},
     /* names of one's own */
     {NODES, "Name,From,To,group,law,value\nac,a,c,inner,tension,10\n",
@@ -84,8 +84,8 @@ static const struct {
      "error: @nodes.csv:2: 8 fields where the header has 5, here and on 2 more lines: decimal commas? Numbers have "
      "points\nerror: @nodes.csv:5: 3 fields where the header has 5\n"},
     {NODES "e,\"1,5\",\"2,5\",\"0,1\",inner\n", CABLES,
-     "error: @nodes.csv:6: 'e': x_m has a decimal comma, and numbers have points: 1,5\n"
-     "error: @nodes.csv: and 2 more numbers with decimal commas\n"},
+     "error: @nodes.csv:6: 'e': x_m has a decimal comma, and numbers have points: 1,5\nerror: @nodes.csv: 2 more "
+     "numbers have decimal commas\n"},
     /* that cables name the node `e` may be a consequence, and is told once; the node `f` is another matter */
     {NODES "d,5,5,5,inner\n", CABLES "ce,c,e,inner,tension,10\nde,d,e,inner,tensoin,10\ncf,c,f,inner,tension,10\n",
      "error: @nodes.csv:6: 'd': this id was used before, on line 5\n"
@@ -140,7 +140,7 @@ START_TEST(long_lists_of_faults_are_cut)
         snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "x%d,a,c,inner,tension,zero\n", i);
     HIFDM(2, "check", net_with(NODES, cables));
     ck_assert_int_eq(count_of(said.err, "value must be a finite number, not zero"), 20);
-    ERR("cables.csv: and 40 more faults\n");
+    ERR("cables.csv: there are 40 more faults\n");
 }
 END_TEST
 
@@ -225,8 +225,8 @@ START_TEST(a_shape_with_a_slack_boundary_cable_is_kept)
              "bd,b,d,inner,tension,10,\nde,d,e,inner,tension,10,\nbc2,c,b,inner,elastic,1.0,1e4\n");
     const char *c = file_with("slack.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n" SMALL_GA);
     HIFDM(3, "run", c, "-o", path);
-    ERR("error: optimize: boundary cable 'bc' has no tension after form-finding from which to start; give it a "
-        "shorter");
+    ERR("error: optimize: boundary cable 'bc' has no tension after form-finding, so the search cannot start. Give "
+        "it a shorter");
     OUT("\n  form          ");
     EXPECT(path, "--", "a.attrs['finished'] == 1", "a['form/tension_N'].shape == (5,)", "'search' not in a",
            "'ga' not in a");

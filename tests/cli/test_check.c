@@ -230,14 +230,14 @@ START_TEST(show_refuses_what_is_no_result)
     HIFDM(5, "show", temp("missing.h5"));
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "show", REFLECTOR);
-    ERR("reflector.yaml: is not an HDF5 file, so no result of hifdm");
+    ERR("reflector.yaml: is not a result of hifdm, because it is not an HDF5 file");
     HIFDM(5, "show", temp("."));
     ERR("is a folder, not a result file");
     const char *const make_other[] = {python_program(), "-c", "import h5py, sys; h5py.File(sys.argv[1], 'w')['x'] = 1",
                                       temp("other.h5"), NULL};
     demand_exit(run_command(HANG_S, make_other), 0, "make an HDF5 file", __LINE__);
     HIFDM(5, "show", temp("other.h5"));
-    ERR("other.h5: is an HDF5 file, but no result of hifdm");
+    ERR("other.h5: is an HDF5 file, but it is damaged or not a result of hifdm");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("whole.h5"));
     SHELL(0, "head -c 5000 <\"$1\" >\"$2\"", temp("whole.h5"), temp("half.h5"));
     HIFDM(5, "show", temp("half.h5"));
@@ -264,7 +264,7 @@ START_TEST(net_is_held_on_its_surface)
     net = net_with(TRIPOD, LEGS);
     HIFDM(2, "check", net, "--set", "form.prestress=exact");
     ERR("form.prestress: exact: no tensions above zero hold 1 of the 1 free nodes at their target positions: n. Each "
-        "lacks a cable that pulls it back onto the surface");
+        "of these nodes lacks a cable that pulls it back onto the surface");
 }
 END_TEST
 
@@ -278,7 +278,8 @@ START_TEST(a_net_without_facets_says_why)
     "cn,c,n,inner,tension,10\nmn,m,n,inner,tension,10\n"
 #define SURFACE "--set", "surface.kind=paraboloid", "--set", "surface.focal_length_m=5"
     const char *cross =
-        "warning: surface: cables on it cross without a node, as seen along z, so there are no facets to measure\n";
+        "warning: surface: seen along z, cables of the surface cross without a common node, so there are no facets to "
+        "measure\n";
     HIFDM(0, "check", net_with(nodes, STAR), SURFACE);
     ck_assert_ptr_null(strstr(said.err, cross));
     HIFDM(0, "check", net_with(nodes, STAR "bm,b,m,inner,tension,1\nan,a,n,inner,tension,1\n"), SURFACE);

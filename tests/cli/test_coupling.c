@@ -126,11 +126,11 @@ START_TEST(a_truss_that_is_too_soft_is_named)
 {
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5");
     ERR("error: the truss is too soft for the coupling with its net: after ");
-    ERR(" an attachment still moves without bound; stiffen the truss (truss.E_Pa and its tubes), lower "
+    ERR(" an attachment still moves without bound. Stiffen the truss (truss.E_Pa and its tubes), lower "
         "form.pretension_N, or solve both in one matrix: coupling.scheme: auto, form.method: newton");
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5", "--set", "form.method=newton");
-    ERR("error: the truss is too soft for its net: together they have no shape; stiffen the truss (truss.E_Pa and its "
-        "tubes) or lower form.pretension_N");
+    ERR("error: the truss is too soft for its net: net and truss together have no equilibrium. Stiffen the truss "
+        "(truss.E_Pa and its tubes) or lower form.pretension_N");
     ck_assert(!is_there(temp("nowhere.h5")));
 }
 END_TEST

@@ -62,16 +62,17 @@ START_TEST(a_crash_of_hdf5_names_the_file)
     HIFDM(0, "run", c, "-o", a, "--quiet");
     HIFDM(0, "run", c, "-o", b, "--quiet");
     SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "1", a, b);
-    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted), beside %s\n", a, b);
+    ERRS("error: %s: is damaged: the process that read it was ended by signal 6 (Aborted), beside %s\n", a, b);
     SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "2", a, b);
-    ERRS("error: %s: is damaged: reading it ended by signal 6 (Aborted), beside %s\n", b, a);
+    ERRS("error: %s: is damaged: the process that read it was ended by signal 6 (Aborted), beside %s\n", b, a);
     SHELL(5, WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a, temp("page.html"));
-    ERRS("error: %s: is damaged: reading it ended by signal 6", a);
+    ERRS("error: %s: is damaged: the process that read it was ended by signal 6", a);
     ck_assert(!is_there(temp("page.html")));
     SHELL(5, WITH_LIBRARY "exec \"$0\" export \"$3\" --csv \"$4\"", library, "9", a, temp("csv"));
-    ERRS("error: %s: is damaged: reading it ended by signal 6", a);
+    ERRS("error: %s: is damaged: the process that read it was ended by signal 6", a);
     SHELL(5, WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "5", unfinished(a), c);
-    ERRS("error: %s: exists and is damaged: reading it ended by signal 6 (Aborted); use --restart", a);
+    ERRS("error: %s: exists and is damaged: the process that read it was ended by signal 6 (Aborted); use --restart",
+         a);
     HIFDM(0, "diff", b, b);
     OUT(" 0 differ;");
     SHELL(0, "exec \"$1\" -c \"$2\" \"$0\" show \"$3\"", python_program(), /* as some launchers leave it */
@@ -100,9 +101,11 @@ START_TEST(a_read_without_end_is_ended)
     const char *library = make_library(), *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *a = temp("a.h5");
     HIFDM(0, "run", c, "-o", a, "--quiet");
     SHELL(5, "export LOOP=1; " WITH_LIBRARY "exec \"$0\" export \"$3\" --csv \"$4\"", library, "4", a, temp("csv"));
-    ERRS("error: %s: is damaged: reading it ended by signal 24 (CPU time limit exceeded)\n", a);
+    ERRS("error: %s: is damaged: the process that read it was ended by signal 24 (CPU time limit exceeded)\n", a);
     SHELL(5, "export LOOP=1; " WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "1", unfinished(a), c);
-    ERRS("error: %s: exists and is damaged: reading it ended by signal 24 (CPU time limit exceeded); use --restart", a);
+    ERRS("error: %s: exists and is damaged: the process that read it was ended by signal 24 (CPU time limit "
+         "exceeded); use --restart",
+         a);
 }
 END_TEST
 
@@ -125,7 +128,7 @@ START_TEST(a_damaged_point_stops_no_other)
     HIFDM(3, "sweep", study, "--dir", folder, "--quiet");
     HIFDM(0, "status", study, "--dir", folder);
     OUT("done      1\n  failed    1\n");
-    OUT(formatted("%s: exists and is cut off: a truncated HDF5 file; use --restart (of a sweep: --retry failed)",
+    OUT(formatted("%s: exists and is cut off: a truncated HDF5 file; use --restart (in a sweep: --retry failed)",
                   point));
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet", "--retry", "failed");
     HIFDM(0, "show", point);
@@ -185,7 +188,8 @@ START_TEST(a_crash_in_a_sweep_fails_its_point)
     SHELL(3, WITH_LIBRARY "exec \"$0\" sweep \"$3\" --dir \"$4\" --quiet", library, "16", study, folder);
     HIFDM(0, "status", study, "--dir", folder);
     OUT("done      1\n  failed    1\n");
-    OUT(formatted("%s: exists and is damaged: reading it ended by signal 6 (Aborted); use --restart", point));
+    OUT(formatted("%s: exists and is damaged: the process that read it was ended by signal 6 (Aborted); use --restart",
+                  point));
 }
 END_TEST
 
@@ -196,9 +200,13 @@ START_TEST(a_reader_that_is_killed_blames_no_file)
     HIFDM(0, "run", c, "-o", a, "--quiet");
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a,
           temp("page.html"));
-    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory, and time (ulimit -t)?\n", a);
+    ERRS("error: %s: the process that read it was ended by signal 9 (Killed); is there enough memory, and time "
+         "(ulimit -t)?\n",
+         a);
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "5", unfinished(a), c);
-    ERRS("error: %s: reading it was ended by signal 9 (Killed); is there enough memory, and time (ulimit -t)?\n", a);
+    ERRS("error: %s: the process that read it was ended by signal 9 (Killed); is there enough memory, and time "
+         "(ulimit -t)?\n",
+         a);
     const char *study = file_with("s.yaml", STUDY), *folder = temp("s.d");
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
     SHELL(0, "cd \"$1\"; rm points-*.tsv; set -- *.h5; echo \"$1\"", folder);
@@ -207,7 +215,9 @@ START_TEST(a_reader_that_is_killed_blames_no_file)
     /* As above, only the reader of the unfinished point gets as far as that. */
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" sweep \"$3\" --dir \"$4\" --quiet", library, "16", study,
           folder);
-    ERRS(": %s: reading it was ended by signal 9 (Killed); is there enough memory, and time (ulimit -t)?\n", point);
+    ERRS(": %s: the process that read it was ended by signal 9 (Killed); is there enough memory, and time (ulimit "
+         "-t)?\n",
+         point);
     HIFDM(0, "status", study, "--dir", folder, "--json");
     OUT("\"failed\": 0");
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
@@ -226,7 +236,9 @@ START_TEST(a_merge_survives_what_it_would_replace)
     HIFDM(0, "run", temp("c.yaml"), "-o", merged, "--quiet");
     SHELL(0, "mkdir \"$1\" && cp \"$2\" \"$2.mine\"", folder, merged);
     SHELL(5, WITH_LIBRARY "exec \"$0\" merge \"$3\" --dir \"$4\" -o \"$5\"", library, "1", study, folder, merged);
-    ERRS("error: %s: exists and is damaged: reading it ended by signal 6 (Aborted); use --force or -o", merged);
+    ERRS("error: %s: exists and is damaged: the process that read it was ended by signal 6 (Aborted); use --force to "
+         "replace it or -o",
+         merged);
     SHELL(0, "cmp \"$1\" \"$1.mine\"", merged);
     SHELL(0, WITH_LIBRARY "exec \"$0\" merge \"$3\" --dir \"$4\" -o \"$5\" --force", library, "1", study, folder,
           merged);

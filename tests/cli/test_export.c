@@ -161,7 +161,7 @@ START_TEST(what_cannot_be_exported_is_told)
     ERR("reflector.yaml: is not an HDF5 file");
     ck_assert(!is_there(csv));
     HIFDM(5, "export", form_only, "--csv", temp("no/such/folder"));
-    ERR("no/such/folder: cannot make this folder: No such file or directory");
+    ERR("no/such/folder: cannot create this folder: No such file or directory");
     HIFDM(5, "export", form_only, "--csv", form_only); /* below an ordinary file */
     ERR("f.h5/nodes.csv");
     ERR("Not a directory");
@@ -182,7 +182,7 @@ START_TEST(a_mesh_without_shape_is_not_exported)
     ERR("pillows of the form-finding shape are not known: the mesh pulls on a cable");
     ck_assert(!is_there(rf));
     HIFDM(2, "export", out, "--pattern", temp("p.csv"));
-    ERR("there is no far field of this shape: the mesh pulls on a cable");
+    ERR("this shape has no far field: the mesh pulls on a cable");
     ck_assert(!is_there(temp("p.csv")));
 }
 END_TEST

@@ -9,9 +9,8 @@
 static const struct {
     const char *modules, *cells, *error;
 } huge[] = {
-    {"[2000,2000]", "[2000,2000]",
-     "error: scene: 4000001 x 4000001 nodes are more than this program takes (4000000)\n"},
-    {"[2000,1]", "[2000,1]", "error: scene: 4000001 x 2 nodes are more than this program takes (4000000)\n"},
+    {"[2000,2000]", "[2000,2000]", "error: scene: 4000001 x 4000001 nodes exceed the maximum of 4000000\n"},
+    {"[2000,1]", "[2000,1]", "error: scene: 4000001 x 2 nodes exceed the maximum of 4000000\n"},
     {"[2001,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not 2001\n"},
     {"[99999999999999999999,1]", "[1,1]", "must be at least 1 and at most 2000, not 99999999999999999999\n"},
     {"[0,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not 0\n"},

@@ -337,9 +337,8 @@ START_TEST(points_that_have_not_converged_say_so)
 {
     const char *file = temp("f.h5"), *json, *table = temp("f.csv");
     HIFDM(0, "run", FRONT, "-o", file, "--set", "optimize.refine_steps=2");
-    ERR(" of 7 points of the front are not converged after 2 steps: they have no slope, and better designs exist near "
-        "them; "
-        "raise optimize.refine_steps\n");
+    ERR(" of 7 points of the front have not converged after 2 steps. They have no slope, and better designs exist "
+        "near them; raise optimize.refine_steps\n");
     OUT(" failed, ");
     OUT(" not converged; ");
     HIFDM(0, "show", file, "--json");

@@ -45,9 +45,9 @@ START_TEST(lines_are_not_too_long_and_end_in_no_blank)
     SHELL(0, "for c in '' $(\"$0\" help | sed -n 's/^  hifdm \\([a-z]*\\).*/\\1/p'); do \"$0\" help $c; done");
     SHELL(1, "grep -nE '.{101}| $' \"$1\"", file_with("all.txt", said.out));
     HIFDM(0, "help", "check"); /* a line that the text ends by itself */
-    OUT(" line and column.\n  Of a study: axes,");
+    OUT(" line and column.\n  For a study, hifdm check prints");
     HIFDM(0, "help", "report");
-    OUT(" the page compares\n  the two: what ");
+    OUT("With a second result, the page");
 }
 END_TEST
 

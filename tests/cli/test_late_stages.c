@@ -105,7 +105,7 @@ START_TEST(a_restart_keeps_the_finished_result)
     ck_assert(!is_there(earlier));
     write_file(earlier, "precious");
     HIFDM(5, "run", path, "-o", result, "--restart", "--quiet");
-    ERR("this name is for the earlier result");
+    ERR("this name is reserved for the earlier result");
     HIFDM(0, "diff", whole, result);
     SHELL(0, "test \"$(cat \"$1\")\" = precious", earlier);
 }

@@ -79,7 +79,8 @@ START_TEST(a_load_case_is_exported)
     ERRS("error: %s: has no load case 'moon'; it has cold, sun, cup_up, cup_down, spun\n", out);
     HIFDM(2, "export", out, "--csv", temp("no"), "--load-case", "sun", "--stage", "form");
     HIFDM(2, "export", out, "--cutlist", temp("no.csv"), "--load-case", "sun");
-    ERR("error: --load-case does not go with --cutlist, which is of the design that all load cases are made of\n");
+    ERR("error: --load-case cannot be combined with --cutlist, which is of the design that all load cases are made "
+        "of\n");
     ck_assert(!is_there(temp("no")) && !is_there(temp("no.csv")));
     HIFDM(0, "report", out, "-o", temp("page.html"));
     SHELL(0, "grep -c '\"stage\":\"load case ' \"$1\"", temp("page.html"));
@@ -174,7 +175,7 @@ START_TEST(a_load_case_without_a_shape_does_not_stop_the_others)
                   "1e4, 1e5]}\n  - {name: still, support_displacement_m: [0, 0, 0]}\n");
     HIFDM(0, "run", c, "-o", temp("a.h5"));
     OUT("                far              no shape: ");
-    ERR("warning: load_cases: the net has no shape in load case 'far': ");
+    ERR("warning: load_cases: no equilibrium was found in load case 'far': ");
     HIFDM(0, "show", temp("a.h5"), "--json");
     EXPECT(out_as("s.json"), temp("a.h5"), "--", "a['load_cases']['far']['tension_min_N'] is None",
            "'position_m' not in b['load_cases/far']", "a['load_cases']['still']['status'] == 'ok'");

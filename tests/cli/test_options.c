@@ -101,7 +101,7 @@ START_TEST(files_may_begin_with_a_hyphen)
     SHELL(2, "cd \"$1\" && \"$0\" show --", folder);
     ERR("'hifdm show' needs a FILE");
     HIFDM(2, "explain", "--", "-c.yaml");
-    ERR("nothing is called '-c.yaml'");
+    ERR("there is no entry '-c.yaml'");
 }
 END_TEST
 

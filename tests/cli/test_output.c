@@ -21,10 +21,11 @@ START_TEST(existing_output_is_not_replaced)
 {
     const char *path = temp("mine.h5");
     write_file(path, "mine");
-    REFUSED(path,
-            "error: %s: exists and is no result of hifdm; use --restart (of a sweep: --retry failed) to replace it or "
-            "-o to choose another name\n",
-            path);
+    REFUSED(
+        path,
+        "error: %s: exists and is not a result of hifdm; use --restart (in a sweep: --retry failed) to replace it or "
+        "-o to choose another name\n",
+        path);
     ck_assert(file_is(path, "mine"));
     HIFDM(2, "run", file_with("bad.yaml", "scene: 1\n"), "-o", path, "--force");
     ck_assert(file_is(path, "mine"));
@@ -34,7 +35,7 @@ START_TEST(existing_output_is_not_replaced)
     EXPECT(path, "--", "'form' in a");
     demand_no_leftovers();
     HIFDM(2, "run", path, "-o", temp("other.h5"));
-    ERR("mine.h5: is an HDF5 file, no case: if it is a result, hifdm show, report and export read it\n");
+    ERR("mine.h5: is an HDF5 file, not a case. If it is a result, use hifdm show, report or export\n");
     SHELL(0, "head -c 30000 \"$1\" >\"$1.cut\" && mv \"$1.cut\" \"$1\"", path);
     REFUSED(path, "error: %s: exists and is cut off: a truncated HDF5 file; use --restart", path);
 }
@@ -56,7 +57,7 @@ START_TEST(output_is_looked_at_before_the_work)
                                 "optimize.stagnation_generations=1000000",
                                 NULL};
     demand_exit(run_command(HANG_S, argv), 5, "existing output", __LINE__);
-    ERR("use --restart (of a sweep: --retry failed) to replace it");
+    ERR("use --restart (in a sweep: --retry failed) to replace it");
     ck_assert(file_is(path, "mine"));
 }
 END_TEST
@@ -67,8 +68,8 @@ START_TEST(output_that_cannot_be_is_told)
     REFUSED(temp("no/such/r.h5"), "error: %s: there is no folder %s;", temp("no/such/r.h5"), temp("no/such"));
     REFUSED(temp("file/r.h5"), "error: %s: there is no folder %s;", temp("file/r.h5"), temp("file"));
     REFUSED(temp("."), "error: %s: is a folder; use -o to choose a file name\n", temp("."));
-    REFUSED("/dev/full", "error: /dev/full: is not an ordinary file; use -o to choose a file name\n");
-    REFUSED("/dev/null", "error: /dev/null: is not an ordinary file; use -o to choose a file name\n");
+    REFUSED("/dev/full", "error: /dev/full: is not a regular file; use -o to choose a file name\n");
+    REFUSED("/dev/null", "error: /dev/null: is not a regular file; use -o to choose a file name\n");
     REFUSED("/proc/hifdm.h5", "error: /proc/hifdm.h5: cannot "); /* nobody can make a file there, root included */
     ck_assert(file_is(temp("file"), "mine"));
     HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("file/r.h5"), "--force");
@@ -141,10 +142,10 @@ START_TEST(paths_are_as_long_as_the_system_has_them)
     }
     const char *study = file_with("s.yaml", "base: c.yaml\nsweep: {form.pretension_N: [9, 10]}\n");
     HIFDM(5, "sweep", study, "--dir", deep);
-    ERR("0: the path is too long: here it may have 1023 bytes\n");
+    ERR("0: the path is too long; at most 1023 bytes are possible here\n");
     HIFDM(0, "sweep", study, "--dir", temp("s.d"));
     HIFDM(5, "merge", study, "--dir", temp("s.d"), "-o", formatted("%s/m.h5", deep));
-    ERR("/m.h5: the path is too long: here it may have 1023 bytes\n");
+    ERR("/m.h5: the path is too long; at most 1023 bytes are possible here\n");
     SHELL(0, "ls \"$1\"", deep);
     ck_assert_int_eq(count_of(said.out, "\n"), 1); /* the folder made above, and nothing else */
     demand_no_leftovers();
@@ -189,7 +190,7 @@ START_TEST(a_merge_into_no_ordinary_file)
         for (int force = 0; force < 2; force++) {
             SHELL(0, formatted(MERGE_INTO("x") "%s; test $? = 5 && %s \"$2/x\"", force ? " --force" : "", make[i][1]),
                   study, folder);
-            ERRS("x: is %s; use -o to choose a file name\n", i == 1 ? "a folder" : "not an ordinary file");
+            ERRS("x: is %s; use -o to choose a file name\n", i == 1 ? "a folder" : "not a regular file");
         }
     }
 }

@@ -92,8 +92,8 @@ END_TEST
 START_TEST(what_is_of_no_point_is_told)
 {
     static const char beside[] =
-        "a front is no single design, so load_cases and tolerance belong to the net of the form-finding",
-                      untaken[] = ": no point of its front is taken: the shape is that of the form-finding, ";
+        "a front is not a single design, so load_cases and tolerance belong to the net of the form-finding",
+                      untaken[] = ": no point of its front is selected, so the shape is that of the form-finding, ";
     const char *c = file_with("d.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), *front = temp("f.h5"),
                *path = temp("p.h5"), *cut = temp("cut.csv"), *said_at;
     HIFDM(0, "check", c);
@@ -136,7 +136,7 @@ START_TEST(points_of_generations_are_taken)
     c, "--set", "optimize.generations=5", "--set", "optimize.front=[{figure: psi}, {figure: deflection}]"
     HIFDM(0, "run", GENERATIONS, "-o", front);
     HIFDM(0, "export", front, "--csv", temp("end"));
-    ERR(": no point of its front is taken: the shape is the end of the front with the minimum objective_0_psi. ");
+    ERR(": no point of its front is selected, so the shape is the end of the front with the minimum objective_0_psi. ");
     HIFDM(0, "run", GENERATIONS, "--point", point(front, 2), "-o", path);
     EXPECT(front, path, "--", "near(b['objective/refine'][0], a['front/objective'][1, 0], 1e-6)",
            "near(b['objective/refine'][1], a['front/objective'][1, 1], 1e-6)",

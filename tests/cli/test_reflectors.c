@@ -55,7 +55,7 @@ static const struct {
     {DISH_ALONE "truss: {ring: {}}\n",
      ": truss.ring.height_m: is missing: the net has no rear rim that gives this height\n"},
     {DISH "truss: {ring: {cells_per_bay: 5}}\n",
-     ":2:31: truss.ring.cells_per_bay: of 5 must divide the 24 cells at the rim into three bays or more\n"},
+     ":2:31: truss.ring.cells_per_bay: 5 must divide the 24 cells at the rim into at least three bays\n"},
     {DISH "truss: {ring: {cells_per_bay: 12}}\n", ":2:31: truss.ring.cells_per_bay: of 12 must divide the 24"},
     {DISH "truss: {ring: {longeron: {wall_m: 0.02}}}\n",
      ":2:35: truss.ring.longeron.wall_m: must not be more than half the diameter_m beside it\n"},
@@ -170,7 +170,7 @@ START_TEST(rings_under_quad_nets)
 {
     const char *path = file_with("c.yaml", QUAD_DISH "truss: {ring: {cells_per_bay: 3}}\n");
     HIFDM(2, "check", path);
-    ERR("error: truss.ring.cells_per_bay: of 3 must divide the 28 cells at the rim into three bays or more\n");
+    ERR("error: truss.ring.cells_per_bay: 3 must divide the 28 cells at the rim into at least three bays\n");
     HIFDM(0, "check", path, "--set", "truss.ring.cells_per_bay=1");
     OUT("  truss         56 nodes, 112 members; ");
     OUT("; 56 attachments\n");

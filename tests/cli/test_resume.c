@@ -176,13 +176,13 @@ START_TEST(a_torn_journal_gives_what_is_whole)
     SHELL(0, "cp \"$1\" \"$2\" && cp \"$1.journal\" \"$2.journal\"", path, copy);
     SHELL(0, "printf another | dd of=\"$1.journal\" bs=1 seek=10 conv=notrunc 2>/dev/null", copy);
     HIFDM(5, "recover", copy);
-    ERR("is of another case; delete it, put the right one there");
+    ERR("belongs to another case. Delete it, put the right journal there");
     ck_assert_int_ge(generations_in_journal(copy, NULL), n - 2);                         /* it is as it was */
     SHELL(0, "head -c 30 \"$1.journal\" >\"$1.t\" && mv \"$1.t\" \"$1.journal\"", path); /* not even a header */
     HIFDM(0, "recover", path);
     write_file(keep(formatted("%s.journal", path)), "somebody's diary");
     HIFDM(5, "run", c, "-o", path);
-    ERR("is no journal of hifdm");
+    ERR("is not a journal of hifdm");
     ck_assert(file_is(keep(formatted("%s.journal", path)), "somebody's diary"));
 }
 END_TEST

@@ -110,7 +110,8 @@ START_TEST(a_cable_called_like_a_variable_of_a_support_is_refused)
           net_with(nodes, "id,i,j,group,law,value,set\nc1,a,m,boundary,tension,10,edge\n"
                           "c.y,b,m,boundary,tension,10,edge\nc3,c,m,boundary,tension,9,stay\n"),
           "--template", temp("t.csv"), "--set", VARIABLES);
-    ERR("error: optimize.variables: cable 'c.y' has the name of a design variable of a support; rename it\n");
+    ERR("error: optimize.variables: the name of cable 'c.y' is also the name of a design variable of a support; "
+        "rename the cable\n");
     ck_assert(!is_there(temp("t.csv")));
 }
 END_TEST
@@ -311,9 +312,8 @@ START_TEST(rows_that_no_variable_reaches_are_named)
                                              "    - {figure: tension, set: all, bounds: [null, 90]}\n"
                                              "    - {figure: ratio, set: far, bounds: [1, 5]}\n");
     HIFDM(0, "run", path, "-o", temp("two.h5"));
-    ERRS("warning: %s:7:7: optimize.variables.1: changes nothing at the initial design, because its cables, or those "
-         "at its "
-         "supports, are slack\n",
+    ERRS("warning: %s:7:7: optimize.variables.1: has no effect at the initial design, because its cables or the "
+         "cables at its supports are slack\n",
          path);
     ERRS("warning: %s:9:7: optimize.objective.0: no design variable of this case changes objective_0_mass_far: all of "
          "its "
@@ -341,17 +341,13 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
         "optimize.variables=[{set: far, vary: tension, range: 1}]"};
     static const char *const why[] = {
         ("error: --set optimize.objective.0: no design variable of this case changes objective_0_length_far: all of "
-         "its "
-         "cables keep their lengths; add one that does, or leave the row out\nerror: --set optimize.objective.1: no "
-         "design "
-         "variable of this case "
-         "changes objective_1_evenness_far: all of its cables keep their tensions; add one that does, or leave the row "
-         "out\n"),
+         "its cables keep their lengths. Add a design variable that does, or remove the row\nerror: --set "
+         "optimize.objective.1: no design variable of this case changes objective_1_evenness_far: all of its cables "
+         "keep their tensions. Add a design variable that does, or remove the row\n"),
         ("error: --set optimize.front.1: no design variable of this case changes objective_1_mass_far: all of its "
-         "cables keep their lengths; add one that does, or leave the row out\n"),
-        ("error: --set optimize.variables.0: no design variable of this case changes psi: none of its nodes moves; add "
-         "one that does, or use another "
-         "optimize.objective\n")};
+         "cables keep their lengths. Add a design variable that does, or remove the row\n"),
+        ("error: --set optimize.variables.0: no design variable of this case changes psi: none of its nodes moves. "
+         "Add a design variable that does, or use another optimize.objective\n")};
     static const char *const command[] = {"run", "check"};
     const char *net = net_with(two_nets, two_cables), *out = temp("none.h5");
     for (int k = 0; k < 2; k++) {

@@ -145,11 +145,11 @@ START_TEST(points_are_not_missing_because_nobody_sees_them)
     for (int i = 0; i < 3; i++) {
         SHELL(5, keep(formatted("cd \"$1\"; export SICK='stat 5 1 s.d/' LD_PRELOAD=\"$2\"; exec \"$0\" %s", words[i])),
               folder, library);
-        ERR(".h5: cannot look at it: Input/output error");
+        ERR(".h5: cannot get its status: Input/output error");
     }
     SHELL(5, "cd \"$1\"; export SICK='realpath 5 1 s.d' LD_PRELOAD=\"$2\"; exec \"$0\" merge s.yaml -o m.h5", folder,
           library);
-    ERR("m.h5: cannot make links to s.d: Input/output error");
+    ERR("m.h5: cannot create links to s.d: Input/output error");
 }
 END_TEST
 

@@ -282,7 +282,7 @@ START_TEST(check_says_what_a_sweep_would_do)
     OUT("18 done, 0 failed, 0 running, 0 to run");
     OUT("all points have been run");
     HIFDM(2, "check", path, "--set", "form.pretension_N=3");
-    ERR("s.yaml: is a study, which takes no --set");
+    ERR("s.yaml: --set does not work with a study");
 }
 END_TEST
 
@@ -379,10 +379,10 @@ START_TEST(show_of_what_is_no_result_says_what_to_do)
 {
     const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5]\n");
     HIFDM(5, "show", path);
-    ERR("s.yaml: is not an HDF5 file, so no result of hifdm, but a study: `hifdm check ");
+    ERR("s.yaml: is not a result of hifdm, because it is not an HDF5 file, but a study: `hifdm check ");
     ERR("`hifdm merge ");
     HIFDM(5, "show", file_with("base.yaml", NET));
-    ERR("base.yaml: is not an HDF5 file, so no result of hifdm, but a case: `hifdm check ");
+    ERR("base.yaml: is not a result of hifdm, because it is not an HDF5 file, but a case: `hifdm check ");
     HIFDM(5, "show", file_with("other.txt", "words\n"));
 }
 END_TEST

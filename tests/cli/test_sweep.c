@@ -28,7 +28,8 @@ START_TEST(sweep_status_and_merge)
 {
     const char *path = study(), *folder = temp("s.d"), *merged = temp("s.h5");
     HIFDM(5, "status", path, "--dir", folder);
-    ERRS("error: %s: there is no such folder of results; 'hifdm sweep' makes it, --dir names another\n", folder);
+    ERRS("error: %s: there is no such folder of results; 'hifdm sweep' creates it, and --dir names another folder\n",
+         folder);
     SHELL(0, "cd \"$1\" && \"$0\" status \"$2\"", temp(""), path); /* not begun */
     OUT("missing   4");
     HIFDM(0, "sweep", path, "--dir", folder);
@@ -105,7 +106,7 @@ START_TEST(tasks_that_would_leave_points_out_are_refused)
 {
     const char *path = study();
     HIFDM(2, "sweep", path, "--task", "3", "--tasks", "3");
-    ERR("task 3 of 3: they count from 0");
+    ERR("task 3 of 3: the tasks are numbered from 0");
     HIFDM(2, "sweep", path, "--task", "1");
     HIFDM(2, "sweep", path, "--tasks", "2");
     SHELL(2,
@@ -114,7 +115,7 @@ START_TEST(tasks_that_would_leave_points_out_are_refused)
           path);
     ERR("the Slurm array has gaps");
     HIFDM(2, "sweep", path, "--retry", "everything");
-    ERR("must be of missing, failed, outdated");
+    ERR("must be a list of missing, failed and outdated");
 }
 END_TEST
 
@@ -277,7 +278,7 @@ START_TEST(a_case_with_a_sweep_of_its_own)
 {
     const char *path = file_with("one.yaml", SMALL_SCENE "sweep:\n  form.pretension_N: [8, 9, 10]\n  files: all\n");
     HIFDM(2, "run", path, NOWHERE);
-    ERR("has a section sweep; run it by 'hifdm sweep ");
+    ERR("has a section sweep; run it with 'hifdm sweep ");
     HIFDM(0, "check", path);
     HIFDM(0, "sweep", path, "--dir", temp("s.d"), "--quiet");
     HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"));
@@ -397,7 +398,7 @@ START_TEST(merge_replaces_only_merges)
     const char *path = study(), *precious = file_with("precious.h5", "not a merge\n");
     SHELL(0, "mkdir \"$1\"", temp("s.d"));
     HIFDM(5, "merge", path, "--dir", temp("s.d"), "-o", precious);
-    ERR("exists and is no merge");
+    ERR("exists and is not a merged study");
     ck_assert(file_is(precious, "not a merge\n"));
     HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", precious, "--force"); /* of four missing points */
     EXPECT(precious, "--", "a['points/status'][:].tolist() == [7] * 4");

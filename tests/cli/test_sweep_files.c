@@ -120,7 +120,7 @@ static void retry_helps(const char *path, const char *folder, const char *why)
     ck_assert_ptr_null(strstr(said.err, "HDF5-DIAG"));
     HIFDM(0, "status", path, "--dir", folder);
     OUT(why);
-    OUT("(of a sweep: --retry failed)");
+    OUT("(in a sweep: --retry failed)");
     OUT("--retry failed' runs these anew");
     HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
     OUT("1 point run");
@@ -133,7 +133,7 @@ START_TEST(a_begun_point_with_a_foreign_journal)
 {
     const char *folder = temp("s.d"), *path = begun_study(folder);
     SHELL(0, "cd \"$1\" && j=$(echo *.journal) && rm $j && echo 'a diary' >../diary && ln -s ../diary $j", folder);
-    retry_helps(path, folder, "is no journal of hifdm, and in the way; delete it, use --restart");
+    retry_helps(path, folder, "is not a journal of hifdm, but has the name of one. Delete it, use --restart");
     ck_assert(file_is(temp("diary"), "a diary\n")); /* only its second name went */
 }
 END_TEST
@@ -169,7 +169,7 @@ START_TEST(a_name_that_is_taken_meanwhile)
     HIFDM(0, "status", path, "--dir", folder);
     OUT("failed    1");
     OUT("done      2");
-    OUT("was made, replaced or removed by someone else during the run; this run's result is ");
+    OUT("was created, replaced or removed by another process during the run; this run's result is ");
     HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
     HIFDM(0, "status", path, "--dir", folder);
     OUT("done      3");
@@ -181,10 +181,11 @@ START_TEST(a_foreign_journal_goes_with_restart_only)
     const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *path = temp("run.h5");
     file_with("run.h5.journal", "a diary");
     HIFDM(5, "run", c, "-o", path);
-    ERRS("error: %s: %s.journal is no journal of hifdm, and in the way; delete it, use --restart", path, path);
+    ERRS("error: %s: %s.journal is not a journal of hifdm, but has the name of one. Delete it, use --restart", path,
+         path);
     ck_assert(file_is(temp("run.h5.journal"), "a diary"));
     HIFDM(0, "run", c, "-o", path, "--restart");
-    ERRS("warning: %s: %s.journal was no journal of hifdm; it is replaced", path, path);
+    ERRS("warning: %s: %s.journal was not a journal of hifdm and is replaced", path, path);
     ck_assert(!is_there(temp("run.h5.journal")));
     EXPECT(path, "--", "a.attrs['finished'] == 1");
 }
@@ -199,18 +200,18 @@ START_TEST(what_is_no_file_in_the_folder_is_named)
     for (int k = 0; k < 2; k++) {
         SHELL(0, "mkdir -p \"$1\" && $3 \"$2\"", folder, there, make[k]);
         HIFDM(5, "status", path, "--dir", folder);
-        ERRS("error: %s: is a folder or no ordinary file, and in the way; remove it\n", there);
+        ERRS("error: %s: is a folder or another special file; remove it\n", there);
         HIFDM(5, "merge", path, "--dir", folder, "-o", temp("s.h5"));
-        ERRS("error: %s: is a folder or no ordinary file, and in the way; remove it\n", there);
+        ERRS("error: %s: is a folder or another special file; remove it\n", there);
         HIFDM(5, "sweep", path, "--dir", folder);
         ERRS("error: %s: is a ", there);
-        ERR("and in the way; remove it\n");
+        ERR("another special file; remove it\n");
         SHELL(0, "rm -r \"$1\"", there);
     }
     HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
     SHELL(0, "mkfifo \"$1\"", temp("pipe.h5"));
     HIFDM(5, "merge", path, "--dir", folder, "-o", temp("pipe.h5"));
-    ERRS("error: %s: is not an ordinary file; use -o to choose a file name", temp("pipe.h5"));
+    ERRS("error: %s: is not a regular file; use -o to choose a file name", temp("pipe.h5"));
 }
 END_TEST
 
@@ -222,7 +223,7 @@ START_TEST(a_table_that_is_too_long_is_not_read)
     SHELL(0, "mkdir \"$1\" && truncate -s 40G \"$2\"", folder, there);
     for (int k = 0; k < 3; k++) {
         HIFDM(5, command[k], path, "--dir", folder);
-        ERRS("error: %s: is longer than 4096 MB, so no table of hifdm, and in the way; remove it\n", there);
+        ERRS("error: %s: is not a table of hifdm, because it is longer than 4096 MB; remove it\n", there);
     }
 }
 END_TEST

@@ -92,11 +92,11 @@ START_TEST(samples_tell_the_loss_of_their_far_field)
                                 "tolerance: {sigma_cut_m: 1e-4, samples: 10}\n"),
           "-o", path, "--restart", "--quiet");
     ERR("warning: tolerance: pattern_loss_dB is not measured at 60 GHz: its facets are too coarse");
-    ERR("which loses more than 3 dB into lobes");
+    ERR("a loss of more than 3 dB to grating lobes");
     HIFDM(0, "check",
           file_with("f.yaml", BUILT_SCENE "surface: {frequencies_Hz: [2e9], pattern: {feed: {kind: "
                                           "plane_wave}}}\noptimize: {method: lm, objective: [{figure: gain}]}\n"));
-    ERR("f.yaml:6:36: optimize.objective.0: gain: the net at its target positions already loses ");
+    ERR("f.yaml:6:36: optimize.objective.0: gain: even at its target positions the net loses ");
 }
 END_TEST
 
@@ -274,8 +274,8 @@ START_TEST(faults_are_named)
         {"  truss: [{part: truss, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 5}]\n" SMALL_TRUSS,
          "6:57: tolerance.truss.1.part: has a row already"},
         {"  truss: [{part: truss, sigma_temperature_K: 5}]\n" SMALL_TRUSS,
-         "6:18: tolerance.truss.0.part: the expansion of the truss is not known: give truss.expansion_per_K; 0 for one "
-         "that keeps its shape"},
+         "6:18: tolerance.truss.0.part: the expansion of the truss is not known. Add truss.expansion_per_K; use 0 for "
+         "a truss that does not expand"},
         {"  truss: [{part: longeron, sigma_temperature_K: 5}]\n" SMALL_TRUSS "  expansion_per_K: 1e-6\n",
          "6:18: tolerance.truss.0.part: the truss has no members of unit longeron"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m}]\n", "has no limit; give at_most, at_least or both"},
@@ -314,7 +314,7 @@ START_TEST(faults_are_named)
     HIFDM(2, "tolerance", file_with("f.yaml", BUILT_SCENE), NOWHERE);
     ERR("has no section tolerance");
     HIFDM(2, "tolerance", built_case("random"), NOWHERE, "--task", "3", "--tasks", "3");
-    ERR("--task 3: tasks of 3 are 0 to 2");
+    ERR("--task 3: the 3 tasks are numbered 0 to 2");
 }
 END_TEST
 

@@ -202,8 +202,8 @@ START_TEST(a_truss_that_turns_far_is_told)
     ck_assert_str_eq(said.err, "");
     HIFDM(0, "run", c, "-o", out, "--restart", "--set", "optimize.method=lm", "--set", variables, "--set",
           "form.pretension_N=30");
-    ERR("warning: truss: its attachments deflect so far (");
-    ERR(" mm in the result) that its linear theory");
+    ERR("warning: truss: the attachments deflect by ");
+    ERR(" mm in the result, so the linear theory");
 }
 END_TEST
 

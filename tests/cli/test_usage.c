@@ -4,7 +4,7 @@
 static const struct {
     const char *argv[6], *error;
 } wrong[] = {
-    {{NULL}, "error: a command is missing; 'hifdm help' lists them\n"},
+    {{NULL}, "error: there is no command; 'hifdm help' lists the commands\n"},
     {{"rnu", "CASE"}, "error: unknown command 'rnu'; did you mean 'run'?\n"},
     {{"exprot", "CASE"}, "error: unknown command 'exprot'; did you mean 'export'?\n"},
     {{"Check", "CASE"}, "error: unknown command 'Check'; did you mean 'check'?\n"},
@@ -24,13 +24,13 @@ static const struct {
     {{"run", "CASE", "-x"}, "error: unknown option '-x'; 'hifdm help run' lists them\n"},
     {{"run", "CASE", "--nonsense"}, "error: unknown option '--nonsense'; 'hifdm help run' lists them\n"},
     {{"show", "FILE", "--set", "a=1"},
-     "error: '--set' does not go with this command; 'hifdm help show' lists what does\n"},
+     "error: '--set' is not an option of this command; 'hifdm help show' lists its options\n"},
     {{"check", "CASE", "--force"},
-     "error: '--force' does not go with this command; 'hifdm help check' lists what does\n"},
+     "error: '--force' is not an option of this command; 'hifdm help check' lists its options\n"},
     {{"run", "CASE", "-o"}, "error: '-o' needs FILE behind it\n"},
-    {{"run", "CASE", "-o", ""}, "error: '--output' needs FILE behind it, not an empty word\n"},
-    {{"sweep", "STUDY", "--dir="}, "error: '--dir' needs DIR behind it, not an empty word\n"},
-    {{"export", "FILE", "--csv", ""}, "error: '--csv' needs DIR behind it, not an empty word\n"},
+    {{"run", "CASE", "-o", ""}, "error: '--output' must be followed by FILE, not by an empty word\n"},
+    {{"sweep", "STUDY", "--dir="}, "error: '--dir' must be followed by DIR, not by an empty word\n"},
+    {{"export", "FILE", "--csv", ""}, "error: '--csv' must be followed by DIR, not by an empty word\n"},
     {{"run", "CASE", "--threads"}, "error: '--threads' needs N behind it\n"},
     {{"run", "CASE", "--threads", "0"}, "error: --threads must be from 1 to 4096, not '0'\n"},
     {{"run", "CASE", "--threads", "-1"}, "error: --threads must be from 1 to 4096, not '-1'\n"},
@@ -51,8 +51,8 @@ static const struct {
     {{"evaluate", "CASE", "--designs=D", "--json"},
      "error: --json needs -o FILE here, because otherwise the table goes to standard output\n"},
     {{"evaluate", "CASE", "--seed", "1"},
-     "error: '--seed' does not go with this command; 'hifdm help evaluate' lists what does\n"},
-    {{"run", "CASE", "--json=yes"}, "error: '--json' takes no value\n"},
+     "error: '--seed' is not an option of this command; 'hifdm help evaluate' lists its options\n"},
+    {{"run", "CASE", "--json=yes"}, "error: '--json' has no value\n"},
 };
 enum { N_WRONG = sizeof wrong / sizeof *wrong };
 

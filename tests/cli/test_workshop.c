@@ -118,7 +118,7 @@ START_TEST(paraview_files_of_an_imported_net)
                                 "bc,b,c,inner,tension,10,\nbd,b,d,inner,elastic,7,5000\n");
     const char *out = temp("net.h5"), *folder = temp("vtk"), *form = temp("vtk/form.hdf");
     HIFDM(0, "run", path, "-o", out, "--quiet");
-    ERR("warning: slack in the form-finding shape, 1: bd\n");
+    ERR("warning: slack cables in the form-finding shape (1): bd\n");
     HIFDM(0, "export", out, "--vtk", folder);
     demand_vtk(out, folder, "form target");
     write_file(form, "mine");
@@ -128,9 +128,9 @@ START_TEST(paraview_files_of_an_imported_net)
     HIFDM(0, "export", out, "--vtk", folder, "--force");
     demand_vtk(out, folder, "form target");
     HIFDM(2, "export", out, "--vtk", folder, "--stage", "form");
-    ERR("error: --stage does not go with --vtk alone, which writes every shape\n");
+    ERR("error: --stage cannot be combined with --vtk alone, which writes every shape\n");
     HIFDM(5, "export", out, "--vtk", temp("no/such/folder"));
-    ERR("cannot make this folder");
+    ERR("cannot create this folder");
     HIFDM(5, "export", out, "--vtk", form); /* below an ordinary file */
     ERR("Not a directory");
 }

@@ -80,19 +80,17 @@ START_TEST(net_beside_its_surface_is_refused)
 {
     const char *path = grid_net(true, "  kind: parabolic_cylinder\n  focal_length_m: 4\n");
     HIFDM(2, "run", path, NOWHERE);
-    ERRS("error: %s:5:19: surface.focal_length_m: the inner nodes are not on the parabolic_cylinder with f = 4 m: RMS "
-         "of "
-         "their heights above it 51.03 mm, farthest 'n6', line 8, 62.5 mm (above the parabolic_cylinder z = x^2/(4f) "
-         "the "
-         "RMS is 51.03 mm, above the paraboloid z = (x^2 + y^2)/(4f) 0 mm); give surface.kind: paraboloid\n",
+    ERRS("error: %s:5:19: surface.focal_length_m: the inner nodes are not on the parabolic_cylinder with f = 4 m: the "
+         "RMS of their heights above it is 51.03 mm, and the farthest is 'n6', line 8, 62.5 mm (the RMS above the "
+         "parabolic_cylinder z = x^2/(4f) is 51.03 mm, and above the paraboloid z = (x^2 + y^2)/(4f) it is 0 mm); "
+         "give surface.kind: paraboloid\n",
          path);
     HIFDM(2, "check", path);
     ERR("surface.focal_length_m: the inner nodes are not on the parabolic_cylinder");
     path = grid_net(false, "  kind: auto\n");
     HIFDM(2, "check", path, "--set", "surface.kind=paraboloid", "--set", "surface.focal_length_m=4");
-    ERR("error: --set surface.focal_length_m: the inner nodes are not on the paraboloid with f = 4 m: RMS of their "
-        "heights "
-        "above it 51.03 mm");
+    ERR("error: --set surface.focal_length_m: the inner nodes are not on the paraboloid with f = 4 m: the RMS of "
+        "their heights above it is 51.03 mm");
     ERR("give surface.kind: parabolic_cylinder\n");
     path = grid_net(false, "  kind: auto\n  focal_length_m: 8\n"); /* neither: another focal length */
     HIFDM(2, "check", path);
@@ -128,7 +126,7 @@ START_TEST(cables_between_the_same_nodes_are_told)
         snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "t%d,e,d,inner,force_density,0.01\n", i);
     HIFDM(0, "check", net_with(SLACK_NODES, cables));
     ck_assert_int_eq(count_of(said.err, "joins the same"), 5);
-    ERR("warning: scene: and 5 more cables that join the same two nodes as another\n");
+    ERR("warning: scene: 5 more cables join the same two nodes as another cable\n");
 }
 END_TEST
 
@@ -152,7 +150,8 @@ START_TEST(lengths_in_another_unit_are_told)
                                 "d,1,1,0,support\n";
     char cables[2048] = "id,i,j,group,law,value,EA_N\nab,a,b,inner,length,1005,\nbc,b,c,inner,elastic,0.498,1e4\n";
     HIFDM(0, "check", net_with(nodes, formatted("%sbd,b,d,inner,elastic,1.5,1e4\n", cables)));
-    ERRS("warning: %s:2: cable 'ab' is 1005 m long by its law, 1e+03 times the distance of its nodes: is it in m?\n",
+    ERRS("warning: %s:2: cable 'ab' is 1005 m long by its law, 1e+03 times the distance between its nodes: is its "
+         "length in m?\n",
          temp("cables.csv"));
     ERRS("warning: %s:3: cable 'bc' is 0.498 m long by its law, 0.496 times ", temp("cables.csv"));
     ck_assert_int_eq(count_of(said.err, "by its law"), 2);
@@ -160,7 +159,7 @@ START_TEST(lengths_in_another_unit_are_told)
         snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "t%d,b,d,inner,length,1600,\n", i);
     HIFDM(0, "check", net_with(nodes, cables));
     ck_assert_int_eq(count_of(said.err, "by its law"), 5);
-    ERR("warning: scene: and 3 more cables of other lengths than their nodes are apart\n");
+    ERR("warning: scene: 3 more cables have other lengths than the distances between their nodes\n");
 }
 END_TEST
 
@@ -217,10 +216,10 @@ START_TEST(focal_length_out_of_proportion_is_told)
 {
     const char *path = file_with("f.yaml", SMALL_SCENE);
     HIFDM(0, "check", path, "--set", "scene.parabolic_cylinder.focal_length_m=41");
-    ERR("warning: --set scene.parabolic_cylinder.focal_length_m: 41 m is 20 times the aperture of 2 m; reflectors have "
-        "less than 20: is it in m?\n");
+    ERR("warning: --set scene.parabolic_cylinder.focal_length_m: 41 m is 20 times the aperture of 2 m; reflectors "
+        "have less than 20 times. Is this value in m?\n");
     HIFDM(0, "check", path, "--set", "scene.parabolic_cylinder.focal_length_m=40");
-    ck_assert_ptr_null(strstr(said.err, "is it in m?"));
+    ck_assert_ptr_null(strstr(said.err, "in m?"));
     path = grid_net(true, "  kind: paraboloid\n  focal_length_m: 4000\n");
     HIFDM(2, "check", path); /* and it is not on this surface */
     ERRS("warning: %s:5:19: surface.focal_length_m: 4000 m is 1000 times the aperture of 4 m; ", path);
@@ -232,10 +231,10 @@ START_TEST(net_that_collapses_to_the_plane_of_its_supports_is_told)
 {
 #define BOWL "id,x_m,y_m,z_m,role,Fz_N\na,1,0,1,support,\nb,-1,0,1,support,\nc,0,1,1,support,\nd,0,-1,1,support,\n"
 #define STAR "id,i,j,group,law,value\nae,a,e,inner,tension,1\nbe,b,e,inner,tension,1\nce,c,e,inner,tension,1\n"
-#define FLAT "warning: scene: all supports are in one plane, and no load, tie or strut holds the net off it: "
+#define FLAT "warning: scene: all supports are in one plane, and no load, tie or strut holds the net away from it. "
     HIFDM(0, "run", net_with(BOWL "e,0,0,0.7,inner,\n", STAR "de,d,e,inner,tension,1\n"), "-o", temp("b.h5"), "--json");
-    ERR(FLAT "whatever its tensions, it collapses there, and the inner nodes are at least 300 mm RMS from their "
-             "target positions. Put supports on the surface, tie the net to another one, or load it\n");
+    ERR(FLAT "The net collapses there with any tensions, and its inner nodes are at least 300 mm RMS from their "
+             "target positions. Put supports on the surface, tie the net to another net, or add loads\n");
     EXPECT(out_as("b.json"), temp("b.h5"), "--", "near(a['form']['psi_m'], 0.3, 1e-9)",
            "any('collapses there' in w for w in a['warnings'])", "'collapses there' in attribute(b, 'warnings')");
     static const char *const other[][2] = {

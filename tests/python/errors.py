@@ -58,7 +58,7 @@ class Errors(unittest.TestCase):
                 {"position": POSITION.astype(np.float32)},
             "end has dtype int64; expected a numpy array of dtype int32 and shape (n, 2)":
                 {"end": END.astype(np.int64)},
-            "value has dtype int64; wanted": {"value": np.arange(4)},
+            "value has dtype int64; expected": {"value": np.arange(4)},
             "role has dtype int64; expected a numpy array of dtype uint8 and shape (5,)": {"role": np.arange(5)},
         }.items():
             self.refused(TypeError, part, self.net, **arguments)
@@ -98,10 +98,10 @@ class Errors(unittest.TestCase):
             "scene: the set 'a' names a cable that there is not": {"sets": {"a": [0, 4]}},
             "scene: the set 'a' must name each cable once": {"sets": {"a": [1, 1]}},
             "scene: every node is a support": {"role": "support"},
-            "scene: 5 nodes and 0 cables are no net": {"end": END[:0]},
+            "scene: 5 nodes and 0 cables are not a net": {"end": END[:0]},
             "arrays:": {"form": {"pretention_N": 1}},
             "unknown key; did you mean 'pretension_N'": {"form": {"pretention_N": 1}},
-            "a net of arrays needs a section scene with an import of nodes and cables, and no facets":
+            "a net from arrays needs a section scene with an import of nodes and cables, and no facets":
                 {"set": {"scene.import.facets": "facets.csv"}},
         }.items():
             self.assertEqual(self.refused(hifdm.HifdmError, part, self.net, **arguments).status, "bad_case")

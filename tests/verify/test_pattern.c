@@ -47,7 +47,7 @@ START_TEST(figures_are_told_everywhere)
            "[float(r['co_dBi']) for r in e] == c['pattern/form/co_dBi'][:].ravel().tolist()",
            "[float(r['theta_deg']) for r in e[61:122]] == c['pattern/form/theta_deg'][:].tolist()");
     HIFDM(2, "export", three, "--pattern", csv, "--force", "--stage", "refine");
-    ERR("there is no far field of this shape");
+    ERR("this shape has no far field");
 }
 END_TEST
 
@@ -75,7 +75,7 @@ START_TEST(nothing_is_done_unasked)
     ck_assert(!strstr(said.out, "\n  pattern  "));
     EXPECT(h5, "--", "'pattern' not in a");
     HIFDM(2, "export", h5, "--pattern", temp("p.csv"));
-    ERR("there is no far field of this shape: its case has no surface.pattern");
+    ERR("this shape has no far field, because its case has no surface.pattern");
 }
 END_TEST
 
@@ -110,12 +110,12 @@ START_TEST(faults_have_their_line)
          path);
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, -3]");
     ERR("error: --set surface.pattern.feed.position_m: from (0, 0, -3) m the feed illuminates 150 of 150 facets from "
-        "behind or not at all; it must be above all facets and aim at them\n");
+        "behind or not at all; the feed must be above all facets and aim at them\n");
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]");
     ck_assert(!strstr(said.err, "coarse"));
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.frequencies_Hz=[1e9, 40e9]");
-    ERR("warning: surface.pattern: at 40 GHz the facets are coarse: ");
+    ERR("warning: surface.pattern: at 40 GHz the facets are coarse. ");
     ERR(" facets instead of 150 would lose 1 dB\n");
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.pattern.feed.aim_m=[0, 0, 2]");

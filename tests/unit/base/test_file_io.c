@@ -182,7 +182,7 @@ START_TEST(what_is_no_ordinary_file_is_named_and_not_read)
 {
     static const struct {
         const char *name, *words;
-    } other[] = {{"pipe", "pipe: is a pipe; name an ordinary file"},
+    } other[] = {{"pipe", "pipe: is a pipe; name a regular file"},
                  {"folder", "folder: is a folder; name"},
                  {"socket", "socket: is a socket; name"},
                  {"zero", "zero: is a device; name"},

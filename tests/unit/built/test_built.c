@@ -60,7 +60,7 @@ START_TEST(two_cables_in_line)
     ck_assert_int_eq(hf_built_make("x.yaml", &net.scene, &net.model, &net.form, &net.work, &built, &messages),
                      HF_BAD_CASE);
     ck_assert_str_eq(messages.text,
-                     "error: x.yaml: 1 inner cables have no EA, which the as-built net needs, like 'c1': give "
+                     "error: x.yaml: 1 inner cables have no EA, which the as-built net needs, such as 'c1'. Add "
                      "scene.EA_inner_N, or the column EA_N of an imported net\n");
     hf_messages_free(&messages);
     hf_built_free(&built);

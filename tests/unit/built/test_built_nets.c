@@ -183,11 +183,11 @@ START_TEST(a_net_without_a_shape_is_told)
     for (int i = 0; i < nets->n_load_case; i++) {
         hf_load_case *load_case = &p.load_cases.load_case[i];
         ck_assert_int_eq(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &p.point, &result), HF_OK);
-        ck_assert_int_eq(nets->cut(p.workspace.objectives->nets, &p.workspace), HF_OK);
-        ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, p.workspace.objectives, &shape), HF_OK);
+        ck_assert_int_eq(nets->cut(p.point.nets, &p.workspace), HF_OK);
+        ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, &p.point, &shape), HF_OK);
         ck_assert_ptr_nonnull(shape);
         load_case->force_N[3 * p.model.inner_row[0]] = 1e30;
-        ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, p.workspace.objectives, &shape), HF_NOT_FINITE);
+        ck_assert_int_eq(hf_objectives_nets_linearise(&p.objectives, i, &p.point, &shape), HF_NOT_FINITE);
         ck_assert_ptr_null(shape);
         ck_assert_int_ne(hf_evaluate(&p.evaluator, p.initial, &p.workspace, &p.point, &result), HF_OK);
         load_case->force_N[3 * p.model.inner_row[0]] = 0;

@@ -238,7 +238,7 @@ START_TEST(missing_and_binary_files_are_refused)
     ck_assert_ptr_nonnull(strstr(m.text, "none.yaml: cannot open"));
     hf_messages_free(&m);
     hf_case_free(&c);
-    ck_assert_ptr_nonnull(strstr(complaint("\x89HDF\r\n\x1a\n", NULL), "is an HDF5 file, no case"));
+    ck_assert_ptr_nonnull(strstr(complaint("\x89HDF\r\n\x1a\n", NULL), "is an HDF5 file, not a case"));
 }
 END_TEST
 

@@ -92,7 +92,7 @@ START_TEST(zip_goes_side_by_side)
     hf_study_free(&s);
     ck_assert_int_eq(read_study("  combine: zip\n  optimize.range_N: [1, 2]\n  form.pretension_N: [8, 9, 10]\n", &s),
                      HF_BAD_CASE);
-    ck_assert_msg(strstr(said, "study.yaml:5:3: sweep.form.pretension_N: has 3 values where optimize.range_N has 2"),
+    ck_assert_msg(strstr(said, "study.yaml:5:3: sweep.form.pretension_N: has 3 values, but optimize.range_N has 2"),
                   "%s", said);
     hf_study_free(&s);
 }
@@ -181,7 +181,7 @@ START_TEST(points_are_counted_before_any_is_made)
                                 "  optimize.range_N: {from: 1, to: 2, n: 1000000}\n",
                                 &s),
                      HF_BAD_CASE);
-    ck_assert_msg(strstr(said, "sweep: 1e+12 points, and a study has at most 1000000"), "%s", said);
+    ck_assert_msg(strstr(said, "sweep: has 1e+12 points, but a study has at most 1000000"), "%s", said);
     hf_study_free(&s);
     ck_assert_int_lt(allocation_count() - before, 100);
 }
@@ -471,7 +471,7 @@ static const struct {
     {"  files: some\n  form.pretension_N: [1]\n", "files must be one of auto, all, none"},
     {"  n: 3\n", "study.yaml:3:3: sweep: has no axis"},
     {"  form.pretension_N: {from: 1, to: 2, n: 2000}\n  optimize.seed: {from: 1, to: 2000, n: 2000}\n",
-     "4000000 points, and a study has at most 1000000"},
+     "4000000 points, but a study has at most 1000000"},
     /* ends too far apart for a difference or a quotient, and too large for a whole number */
     {"  form.pretension_N: {from: 1e308, to: -1e308, n: 3}\n",
      "study.yaml:3:29: sweep.form.pretension_N: from must be above 0 and at most 1000000000, not 1e308"},

@@ -310,7 +310,7 @@ START_TEST(many_faults_are_cut_short)
     for (const char *p = said; (p = strchr(p, '\n')) != NULL; p++)
         n_line++;
     ck_assert_int_eq(n_line, 21);
-    ck_assert_ptr_nonnull(strstr(said, "error: nodes.csv: and 30 more faults\n"));
+    ck_assert_ptr_nonnull(strstr(said, "error: nodes.csv: there are 30 more faults\n"));
 }
 END_TEST
 

@@ -148,14 +148,14 @@ static const struct {
     int planes;
     const char *x_names, *y_names; /* of the refusal, or NULL */
 } broken[] = {
-    {shift, HF_PLANE_Y, "7 cables: c0, c1, c2, c3, c4 and 2 more", NULL},
+    {shift, HF_PLANE_Y, ": c0, c1, c2, c3, c4 and 2 more", NULL},
     {nudge, HF_PLANE_X | HF_PLANE_Y, NULL, NULL},
-    {pull, HF_PLANE_Y, "7 cables: c0, c1, c2, c3, c4 and 2 more", NULL},
-    {push_aside, HF_PLANE_X, NULL, "7 cables: c0, c1, c2, c3, c4 and 2 more"},
-    {relabel, HF_PLANE_Y, "7 cables: c0, c1, c2, c3, c4 and 2 more", NULL},
-    {tighten, 0, "2 cables: c1, c3", "2 cables: c2, c3"},
-    {regroup, HF_PLANE_Y, "4 cables: c0, c1, c2, c3", NULL},
-    {relaw, HF_PLANE_X, NULL, "4 cables: c0, c1, c2, c3"},
+    {pull, HF_PLANE_Y, ": c0, c1, c2, c3, c4 and 2 more", NULL},
+    {push_aside, HF_PLANE_X, NULL, ": c0, c1, c2, c3, c4 and 2 more"},
+    {relabel, HF_PLANE_Y, ": c0, c1, c2, c3, c4 and 2 more", NULL},
+    {tighten, 0, ": c1, c3", ": c2, c3"},
+    {regroup, HF_PLANE_Y, ": c0, c1, c2, c3", NULL},
+    {relaw, HF_PLANE_X, NULL, ": c0, c1, c2, c3"},
 };
 enum { N_BROKEN = sizeof broken / sizeof *broken };
 

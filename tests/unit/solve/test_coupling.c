@@ -33,7 +33,7 @@ START_TEST(bad_attachments_are_refused)
         double f01, f00;
         const char *message;
     } fault[] = {{inner, was, 1e-5, "attachment 1 of the truss: node"},
-                 {-1, was, 1e-5, "is no support"},
+                 {-1, was, 1e-5, "is not a support"},
                  {node[0], was, 1e-5, "attachments 0 and 1"},
                  {kept, NAN, 1e-5, "not finite"},
                  {kept, was + 1e-9, 1e-5, "not symmetric"},

@@ -517,9 +517,9 @@ END_TEST
 START_TEST(what_is_no_table_is_in_the_way)
 {
     static const char *const command[] = {"mkfifo '%s'", "mkdir '%s'", "truncate -s 40G '%s'"};
-    static const char *const words[] = {": is a folder or no ordinary file, and in the way; remove it\n",
-                                        ": is a folder or no ordinary file, and in the way; remove it\n",
-                                        ": is longer than 4096 MB, so no table of hifdm, and in the way; remove it\n"};
+    static const char *const words[] = {": is a folder or another special file; remove it\n",
+                                        ": is a folder or another special file; remove it\n",
+                                        ": is not a table of hifdm, because it is longer than 4096 MB; remove it\n"};
     hf_study s;
     hf_ledger mine;
     hf_points points;

@@ -80,7 +80,7 @@ START_TEST(names_that_cannot_be_are_told_at_once)
     const char *path, *folder = new_folder(&path);
     open_bow(&net);
     const char *const bad[] = {folder, temp_path("no/such/run.h5"), "", "/dev/null", temp_path("nowhere/")};
-    const char *const why[] = {"is a folder", "no/such", "no folder", "not an ordinary file", "no folder"};
+    const char *const why[] = {"is a folder", "no/such", "no folder", "not a regular file", "no folder"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         for (int force = 0; force < 2; force++) {
             ck_assert_int_eq(refuse(bad[i], force, &net.scene, text, sizeof text),
@@ -140,7 +140,8 @@ START_TEST(what_is_no_result_is_refused)
     python("w", temp_path("other.h5"), "f['x'] = 1\nf.attrs['program'] = 'another'");
     const char *const bad[] = {temp_path("missing.h5"), temp_path("."), temp_path("text.h5"),
                                temp_path("empty.h5"),   "/dev/null",    temp_path("other.h5")};
-    const char *const why[] = {"No such file", "is a folder", "not an HDF5", "not an HDF5", "not an HDF5", "no result"};
+    const char *const why[] = {"No such file", "is a folder", "not an HDF5",
+                               "not an HDF5",  "not an HDF5", "not a result"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         ck_assert_int_eq(read_all(bad[i], text, sizeof text), 4);
         ck_assert_msg(strstr(text, bad[i]) && strstr(text, why[i]), "%s", text);
@@ -203,7 +204,7 @@ static const struct {
     {"f['search'].attrs.modify('solver', 77)", 1, "/search names a solver that there is not"},
     {OLD "del f['form'].attrs['culprit'], f['search'].attrs['algorithm_stop'], f['form'].attrs['psi_m']", 0, ""},
     {OLD "del f['form/tension_N']", 1,
-     "(old) and has no /form/tension_N, which this version needs: run its case again, or use that version for it"},
+     "(old) and has no /form/tension_N, which this version needs. Run its case again, or read it with that version"},
     {"del f['form'].attrs['culprit']", 1, "is damaged: attribute culprit of /form is not there"},
     {"f['scene/set/cable'][0] = 10**6", 1, "/scene/set does not describe sets of cables"},
     {"f['scene/set/cable'][1] = f['scene/set/cable'][0]", 1, "/scene/set does not describe sets of cables"},

@@ -186,7 +186,7 @@ START_TEST(stiffness_out_of_range_names_no_node)
     for (int e = 0; e < 8; e++)
         t.E_Pa[e] = t.G_Pa[e] = 1e-310;
     ck_assert_int_eq(hf_frame_build(&t, &frame, &messages), HF_MECHANISM);
-    ck_assert_msg(!strstr(messages.text, "node") && strstr(messages.text, "truss: its stiffness matrix cannot be "),
+    ck_assert_msg(!strstr(messages.text, "node") && strstr(messages.text, "truss: the stiffness matrix cannot be "),
                   "%s", messages.text);
     hf_frame_free(&frame);
     hf_messages_free(&messages);
