@@ -2,8 +2,7 @@
  * stopped at sixteen points between its first iteration and its answer. The oracle tests/verify/bound_oracle.py finds
  * the equilibrium with fifty digits and compares it with the bounds. Header only: a short run is part of `make test`
  * (property/solve), a long one of `make stress`. */
-#ifndef HIFDM_TESTS_BOUNDS_H
-#define HIFDM_TESTS_BOUNDS_H
+#pragma once
 
 #include "flexible.h"
 #include "stress/stress.h"
@@ -186,5 +185,3 @@ static inline void hold_bounds(uint64_t stream, int n_scene, bool on_truss, doub
     ck_assert_msg(run.exit_code == 0, "%s%s", run.out, run.err);
     free_command(&run);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* built_nets - designs of random nets, the as-built nets that are made from them, and samples of these with errors.
  * Header only, like nets.h. */
-#ifndef HIFDM_TESTS_BUILT_NETS_H
-#define HIFDM_TESTS_BUILT_NETS_H
+#pragma once
 
 #include "flexible.h"
 #include "laws.h"
@@ -61,5 +60,3 @@ static inline void make_errors(void *context, long i, double *cut_m, double *EA_
         for (int c = 0; c < 3; c++)
             support_displacement_m[c * e->model->n_node + row] += rng_uniform(&rng, -e->support_m, e->support_m);
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* calls - makes system calls and HDF5 calls fail. The linker redirects the calls of the library and of the tests to
  * calls.c (TEST_WRAP in the Makefile). It cannot redirect calls inside shared libraries. Any thread may make the
  * calls. */
-#ifndef HIFDM_TESTS_CALLS_H
-#define HIFDM_TESTS_CALLS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -20,5 +19,3 @@ void before_call(const char *name, void (*act)(void));
 /* Disturbs the calls that may be interrupted or end early: open, read, write, ..., flock, fsync. One in three is
  * interrupted by a signal, and one in three transfers a single byte. */
 void disturb_calls(bool on);
-
-#endif

@@ -1,6 +1,5 @@
 /* evolution - a small run of the genetic algorithm that goes into a store. Its results come from no net. */
-#ifndef HIFDM_TESTS_EVOLUTION_H
-#define HIFDM_TESTS_EVOLUTION_H
+#pragma once
 
 #include "results.h"
 #include "small_ga.h"
@@ -76,5 +75,3 @@ static inline hf_status begin_new(const char *path, struct run *r, hf_store **s,
     HF_TRY(hf_store_variables(*s, &r->model, &r->ga.population, m));
     return hf_store_publish(*s, &(hf_summary){0}, 1, m);
 }
-
-#endif

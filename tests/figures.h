@@ -1,7 +1,6 @@
 /* figures - compares figures of tests/verify with those of a source. If HIFDM_FIGURES names a file, each comparison
  * adds a line to it for the table of the manual: file, line, kind, figure, ours, reference, tolerance. */
-#ifndef HIFDM_TESTS_FIGURES_H
-#define HIFDM_TESTS_FIGURES_H
+#pragma once
 
 #include "support.h"
 
@@ -40,5 +39,3 @@ static inline void keep_figure(const char *file, int line, const char *kind, dou
 #define VERIFY_AT_MOST(ours, reference, ...) keep_figure(__FILE__, __LINE__, "<=", ours, reference, 0, __VA_ARGS__)
 /* A figure of the source that we do not reach. */
 #define NOT_MET(ours, reference, ...) keep_figure(__FILE__, __LINE__, "not met", ours, reference, NAN, __VA_ARGS__)
-
-#endif

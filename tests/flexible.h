@@ -1,7 +1,6 @@
 /* flexible - random elastic foundations for the supports of test nets. Every symmetric positive definite matrix is the
  * flexibility of some structure. Header only, like nets.h. */
-#ifndef HIFDM_TESTS_FLEXIBLE_H
-#define HIFDM_TESTS_FLEXIBLE_H
+#pragma once
 
 #include "nets.h"
 
@@ -104,5 +103,3 @@ static inline hf_status find_at_once(struct net *net, double tof_m)
     hf_certify(&net->model, &net->work, &net->result);
     return net->result.status;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* laws - what tests of cable laws need in addition to nets.h. Sections: random nets; shapes, and changes of a scene. */
-#ifndef HIFDM_TESTS_LAWS_H
-#define HIFDM_TESTS_LAWS_H
+#pragma once
 
 #include "nets.h"
 
@@ -173,5 +172,3 @@ static inline double *shape_of(struct net *net)
     close_net(net);
     return shape;
 }
-
-#endif

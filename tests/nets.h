@@ -1,7 +1,6 @@
 /* nets - nets for tests, written by hand or from a case file. Header only, because most test files need two or three of
  * these functions and none needs all. Sections: opening and closing, nets by hand, nets from a case. */
-#ifndef HIFDM_TESTS_NETS_H
-#define HIFDM_TESTS_NETS_H
+#pragma once
 
 #include "support.h"
 #include "valid.h"
@@ -155,5 +154,3 @@ static inline void open_case(struct net *net, const char *const *argument)
 #define SMALL_REFLECTOR                                                                                                \
     "configs/reflector.yaml", "scene.parabolic_cylinder.modules=[4, 5]", "scene.parabolic_cylinder.aperture_m=4",      \
         "scene.parabolic_cylinder.length_m=5"
-
-#endif

@@ -1,7 +1,6 @@
 /* goals - rows of optimize.objective for tests, and a net with the target surface of these rows. Header only, like
  * nets.h. */
-#ifndef HIFDM_TESTS_OBJECTIVES_H
-#define HIFDM_TESTS_OBJECTIVES_H
+#pragma once
 
 #include "flexible.h"
 
@@ -86,5 +85,3 @@ static inline void want(struct wanting *t, int n_objective, const hf_objective_s
     hf_messages_free(&messages); /* warns of a feed without a beam */
     ck_assert_int_eq(hf_objectives_point_create(&t->objectives, &t->point), HF_OK);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* population - designs around the boundary tensions of a found shape, for tests of code that evaluates many designs. */
-#ifndef HIFDM_TESTS_POPULATION_H
-#define HIFDM_TESTS_POPULATION_H
+#pragma once
 
 #include "nets.h"
 
@@ -59,5 +58,3 @@ static inline double *design(struct run *r, int i)
 {
     return r->design + i * r->net.model.n_variable;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* reference - nets of tests/verify/data. Header only, like nets.h. */
-#ifndef HIFDM_TESTS_REFERENCE_H
-#define HIFDM_TESTS_REFERENCE_H
+#pragma once
 
 #include "nets.h"
 
@@ -16,5 +15,3 @@ static inline void open_reference(struct net *net, const char *name, const char 
     write_file(temp_path("case.yaml"), text);
     open_case_file(net, temp_path("case.yaml"), (const char *const[]){nodes, cables}, 2);
 }
-
-#endif

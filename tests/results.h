@@ -1,6 +1,5 @@
 /* results - writes and reads result files in tests. Header only, like nets.h. */
-#ifndef HIFDM_TESTS_RESULTS_H
-#define HIFDM_TESTS_RESULTS_H
+#pragma once
 
 #include "nets.h"
 
@@ -135,5 +134,3 @@ static inline void write_result(const char *path, struct net *net)
     ck_assert_int_eq(hf_store_shape(store, HF_STAGE_SEARCH, &net->model, &net->work, design, &messages), HF_OK);
     end(store, &summary);
 }
-
-#endif

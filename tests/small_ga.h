@@ -1,7 +1,6 @@
 /* small_ga - settings of a small genetic algorithm, for tests that need generations but no good search. Nothing in them
  * ends a run early, and only the range limits a design variable. */
-#ifndef HIFDM_TESTS_SMALL_GA_H
-#define HIFDM_TESTS_SMALL_GA_H
+#pragma once
 
 #include <hifdm/optimiser.h>
 
@@ -19,5 +18,3 @@ static inline hf_optimize_settings small_ga(int n_individual, int n_generation)
                                   .mutation_low = 0.1,
                                   .elites = 1};
 }
-
-#endif

@@ -2,8 +2,7 @@
  *
  * A helper aborts the running test (ck_abort_msg) if it cannot do its work, so callers check nothing. The caller frees
  * the strings that helpers return, unless a comment says otherwise. */
-#ifndef HIFDM_TESTS_SUPPORT_H
-#define HIFDM_TESTS_SUPPORT_H
+#pragma once
 
 #include <check.h>
 #include <stdbool.h>
@@ -99,5 +98,3 @@ int rng_int(struct rng *rng, int low, int high);              /* in low..high, b
 void begin_test_run(void);
 void end_test_run(void);
 int tell_skipped(void); /* prints the skipped checks and returns their number; before end_test_run */
-
-#endif

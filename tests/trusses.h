@@ -1,6 +1,5 @@
 /* trusses - trusses for tests, written by hand or made at random. Header only. */
-#ifndef HIFDM_TESTS_TRUSSES_H
-#define HIFDM_TESTS_TRUSSES_H
+#pragma once
 
 #include "support.h"
 
@@ -140,5 +139,3 @@ static inline void check_alike(int n, const double *a, const double *b, double t
                               k / 6, a[k], b[k]);
     }
 }
-
-#endif

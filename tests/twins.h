@@ -1,6 +1,5 @@
 /* twins - as-built nets with errors that the test knows, measured with noise. Header only, like nets.h. */
-#ifndef HIFDM_TESTS_TWINS_H
-#define HIFDM_TESTS_TWINS_H
+#pragma once
 
 #include "flexible.h"
 #include "laws.h"
@@ -115,5 +114,3 @@ static inline void measure_twin(twin *t, double cut_m, double support_m, double 
         }
     }
 }
-
-#endif

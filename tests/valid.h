@@ -1,6 +1,5 @@
 /* The invariants of a model. */
-#ifndef HIFDM_TESTS_VALID_H
-#define HIFDM_TESTS_VALID_H
+#pragma once
 
 #include <hifdm/model.h>
 
@@ -31,5 +30,3 @@ static inline bool model_is_valid(const hf_model *m)
         if (m->attachment_row[i] != m->n_free + i || m->attachment_row[i] >= m->n_node) return false;
     return m->chain_start[0] == 0 && (m->variable || m->n_variable <= m->n_cable);
 }
-
-#endif

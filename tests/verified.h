@@ -1,7 +1,6 @@
 /* verified - computes the measures of a result a second time, from positions and laws alone, in long double and with
  * sums in another order. A mistake in how the library measures a result is found in this way. */
-#ifndef HIFDM_TESTS_VERIFIED_H
-#define HIFDM_TESTS_VERIFIED_H
+#pragma once
 
 #include "nets.h"
 
@@ -113,5 +112,3 @@ static inline void mix_laws(struct rng *rng, hf_scene *scene)
     hf_scene_free(scene);
     *scene = s;
 }
-
-#endif

@@ -5,8 +5,7 @@
  * and variables have C linkage, and libhifdm.so exports them. The library is compiled with -fvisibility=hidden, so all
  * other symbols are hidden. The command `make abi` compares the symbols that the library exports with the symbols that
  * the headers declare. */
-#ifndef HIFDM_API_H
-#define HIFDM_API_H
+#pragma once
 
 #ifdef __cplusplus
 #define HF_API_LINKAGE_BEGIN extern "C" {
@@ -18,5 +17,3 @@
 
 #define HF_API_BEGIN HF_API_LINKAGE_BEGIN _Pragma("GCC visibility push(default)")
 #define HF_API_END _Pragma("GCC visibility pop") HF_API_LINKAGE_END
-
-#endif

@@ -11,8 +11,7 @@
  * hf_batch_next does the work of hf_batch_run for the generations of an optimiser. The program tools/own_optimiser.c
  * has its own optimiser and calls these functions. The command `hifdm evaluate` calls them for designs in a CSV
  * file. */
-#ifndef HIFDM_BATCH_H
-#define HIFDM_BATCH_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/evaluate.h>
@@ -95,4 +94,3 @@ hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design, hf_form_re
 void hf_batch_free(hf_batch *batch);
 
 HF_API_END
-#endif

@@ -7,8 +7,7 @@
  *   hf_built_make    shape and tensions of a design -> unstressed lengths (M32) -> nominal as-built net
  *   hf_built_load_case   load case -> changed lengths, supports and loads
  *   hf_built_solve   one net, which differs from the nominal one -> its shape and tensions */
-#ifndef HIFDM_BUILT_H
-#define HIFDM_BUILT_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/evaluate.h>
@@ -77,4 +76,3 @@ void hf_built_load_case(const hf_built *built, const hf_material *material, cons
                         hf_built_net *net);
 
 HF_API_END
-#endif

@@ -10,8 +10,7 @@
  * The header built.h describes the as-built net and its possible differences from the nominal net. The function
  * hf_built_solve is the reference. The reference gives the same statuses and counts as a batch, and the same shapes
  * within the residual tolerance. */
-#ifndef HIFDM_BUILT_BATCH_H
-#define HIFDM_BUILT_BATCH_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/built.h>
@@ -72,4 +71,3 @@ void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long
                         hf_built_take *take, void *context);
 
 HF_API_END
-#endif

@@ -10,8 +10,7 @@
  *
  * Lengths are in m, tensions in N and force densities in N/m. The order of the floating-point operations must not
  * change because it determines the last bits of stored data sets. */
-#ifndef HIFDM_CABLE_LAW_H
-#define HIFDM_CABLE_LAW_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <math.h>
@@ -210,4 +209,3 @@ static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 }
 
 HF_API_END
-#endif

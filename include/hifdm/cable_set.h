@@ -4,8 +4,7 @@
  * A cable may belong to any number of sets. Generators create one set for each family of cables. The table of cables of
  * an import has the column `set`. The groups inner and boundary are not sets, because hf_scene.group contains them. The
  * names of the groups and the name `all` are not allowed as names of sets. */
-#ifndef HIFDM_CABLE_SET_H
-#define HIFDM_CABLE_SET_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/scene.h>
@@ -45,4 +44,3 @@ int hf_cable_set_find(const hf_scene *scene, const char *name);
 bool hf_cable_set_has(const hf_scene *scene, int i_set, int i_cable);
 
 HF_API_END
-#endif

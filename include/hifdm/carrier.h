@@ -3,8 +3,7 @@
  *
  * Pipeline: truss and scene -> frame (hf_frame_build) -> attachments (hf_truss_attach) -> flexibility of the
  * attachments (hf_frame_condense), which couples the truss with the net (METHOD section 8). */
-#ifndef HIFDM_CARRIER_H
-#define HIFDM_CARRIER_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/frame.h>
@@ -69,4 +68,3 @@ double hf_carrier_second_order_m(const hf_carrier *carrier, const hf_carrier_sta
 void hf_carrier_state_free(hf_carrier_state *state);
 
 HF_API_END
-#endif

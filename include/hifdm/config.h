@@ -11,8 +11,7 @@
  * One table (src/case/config_table.c) holds every key with its type, range, default, unit and help. The rows for the
  * generators are in generate.h and truss.h. The loader validates case files with this table, and `hifdm schema` prints
  * the table. The table defines all defaults. */
-#ifndef HIFDM_CONFIG_H
-#define HIFDM_CONFIG_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/carrier.h>
@@ -195,4 +194,3 @@ extern const int hf_n_list;                 /* number of lists */
 hf_status hf_config_check_value(const char *key, const char *value, const char *location, hf_messages *messages);
 
 HF_API_END
-#endif

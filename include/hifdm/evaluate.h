@@ -8,8 +8,7 @@
  *   hf_evaluate_prepare   values of the design variables -> laws, target values, first force densities
  *   solver                Newton's method or the paper's iteration, coupled with the truss if there is one
  *   hf_evaluate_judge     constraints, violation and objectives -> status, merit */
-#ifndef HIFDM_EVALUATE_H
-#define HIFDM_EVALUATE_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/formfind.h>
@@ -115,4 +114,3 @@ hf_status hf_evaluate_judge(const hf_evaluator *evaluator, const hf_workspace *w
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
 HF_API_END
-#endif

@@ -3,8 +3,7 @@
  *
  * Pipeline: nodes on the target surface -> plane graph of the cables between these nodes, seen along z -> faces of the
  * graph -> facets (METHOD section 9). */
-#ifndef HIFDM_FACETS_H
-#define HIFDM_FACETS_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/scene.h>
@@ -42,4 +41,3 @@ hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surfa
 void hf_facets_free(hf_facets *facets);
 
 HF_API_END
-#endif

@@ -27,8 +27,7 @@
  * Python package does. The comment of hf_batch_wait_quietly in batch.h gives the reason.
  *
  * GSL: call gsl_set_error_handler_off() once. The header hifdm.h gives the reason. */
-#ifndef HIFDM_FLAT_H
-#define HIFDM_FLAT_H
+#pragma once
 
 #include <hifdm/api.h>
 
@@ -166,4 +165,3 @@ void hf_flat_read(const char *path);
 void hf_flat_stop(hf_flat *flat);
 
 HF_API_END
-#endif

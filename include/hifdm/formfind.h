@@ -11,8 +11,7 @@
  *   hf_form_measure_cables   positions -> lengths, tensions (Eqs. 4, 6), deviations from the laws
  *   hf_form_residual_N       tensions -> maximum residual force of a node
  *   hf_form_update           Eqs. 7 and 8 -> next force densities, unless the stopping rule is satisfied */
-#ifndef HIFDM_FORMFIND_H
-#define HIFDM_FORMFIND_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/result.h>
@@ -108,4 +107,3 @@ bool hf_form_chain_is_short(const hf_model *model, const hf_workspace *workspace
                             double *span_m);
 
 HF_API_END
-#endif

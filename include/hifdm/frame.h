@@ -14,8 +14,7 @@
  *
  * Vectors over the nodes have the shape [n_node][6]. A vector contains the components along x, y, z in m or N, followed
  * by the components about x, y, z in rad or N m. */
-#ifndef HIFDM_FRAME_H
-#define HIFDM_FRAME_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/truss.h>
@@ -91,4 +90,3 @@ double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, 
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 HF_API_END
-#endif

@@ -8,8 +8,7 @@
  *
  * The objectives are those of optimize.front, in the same order and units. All objectives of a front are minimised. A
  * point that is not on the front is marked, but never omitted. */
-#ifndef HIFDM_FRONT_H
-#define HIFDM_FRONT_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/settings.h>
@@ -95,4 +94,3 @@ int hf_front_suggested(const hf_front_table *table);
 bool hf_front_dominates(int n_objective, const double *a, const double *b);
 
 HF_API_END
-#endif

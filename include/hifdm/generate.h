@@ -15,8 +15,7 @@
  *                         determines: kind, focal length, strip width; the others remain 0
  *
  * The row defines the key table, the loading and checking of the section, its help and the creation of the scene. */
-#ifndef HIFDM_GENERATE_H
-#define HIFDM_GENERATE_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/cable_law.h>
@@ -213,4 +212,3 @@ const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *wha
 void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface);
 
 HF_API_END
-#endif

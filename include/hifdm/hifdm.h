@@ -39,8 +39,7 @@
  * GSL: the GSL library has one error handler for the whole program. By default this error handler ends the program even
  * if GSL only reports "no progress". Call gsl_set_error_handler_off() (gsl/gsl_errno.h) before hf_surface_measure and
  * hf_surface_fit_points, and before hf_run_case if the case has a section surface. */
-#ifndef HIFDM_HIFDM_H
-#define HIFDM_HIFDM_H
+#pragma once
 
 #include <hifdm/batch.h>
 #include <hifdm/cable_law.h>
@@ -70,5 +69,3 @@
 #include <hifdm/surface.h>
 #include <hifdm/truss.h>
 #include <hifdm/workspace.h>
-
-#endif

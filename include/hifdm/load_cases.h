@@ -1,8 +1,7 @@
 /* load_cases - the load cases of the as-built net, with temperatures, loads and support displacements (METHOD section
  * 12).
  * Stability: internal; this header may change in any version. */
-#ifndef HIFDM_LOAD_CASES_H
-#define HIFDM_LOAD_CASES_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/material.h>
@@ -35,4 +34,3 @@ hf_status hf_load_cases_allocate(const hf_scene *scene, int n_member, int n, hf_
 void hf_load_cases_free(hf_load_cases *load_cases);
 
 HF_API_END
-#endif

@@ -1,7 +1,6 @@
 /* material - thermal expansion and mass of cables and nodes of the as-built net.
  * Stability: internal; this header may change in any version. */
-#ifndef HIFDM_MATERIAL_H
-#define HIFDM_MATERIAL_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/scene.h>
@@ -30,4 +29,3 @@ static inline bool hf_material_names(hf_nodes nodes, unsigned char role)
 }
 
 HF_API_END
-#endif

@@ -2,8 +2,7 @@
  * Stability: stable.
  *
  * All functions read the shape in the workspace, which consists of positions, tensions and loose nodes. */
-#ifndef HIFDM_METRICS_H
-#define HIFDM_METRICS_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/workspace.h>
@@ -31,4 +30,3 @@ bool hf_metrics_is_slack(const hf_model *model, const hf_workspace *workspace, i
 int hf_metrics_slack_count(const hf_model *model, const hf_workspace *workspace);
 
 HF_API_END
-#endif

@@ -14,8 +14,7 @@
  * the matrix band. Rows 0 to n_free-1 are therefore the rows of the force density matrix D. Supports on a truss follow
  * the free nodes, and all other supports come last. The cables have the same order as in the scene. D is stored as a
  * lower band in LAPACK's column-major layout. D(i,j) is band[i-j + j*(half_bandwidth+1)]. */
-#ifndef HIFDM_MODEL_H
-#define HIFDM_MODEL_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/scene.h>
@@ -163,4 +162,3 @@ void hf_model_positions(const hf_model *model, const double *row_m, double *posi
 void hf_model_free(hf_model *model);
 
 HF_API_END
-#endif

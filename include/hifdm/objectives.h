@@ -17,8 +17,7 @@
  * tension and the maximum of 1/tension. Both maxima of a ratio are smoothed in the same way as pull and deflection. The
  * value of an objective is NaN or infinite if the shape has no such value. Examples are psi if all nodes are loose, and
  * the ratio of a set with a slack cable. A surface without a best fit also has no value. */
-#ifndef HIFDM_OBJECTIVES_H
-#define HIFDM_OBJECTIVES_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/facets.h>
@@ -189,4 +188,3 @@ void hf_objectives_pull_rates(const hf_model *model, const hf_workspace *workspa
                               const hf_objectives_rate *by, double *rate);
 
 HF_API_END
-#endif

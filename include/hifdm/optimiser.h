@@ -17,8 +17,7 @@
  *
  * A new optimiser needs a file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a row of HF_OPTIMIZE_METHODS
  * in settings.h. */
-#ifndef HIFDM_OPTIMISER_H
-#define HIFDM_OPTIMISER_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/population.h>
@@ -124,4 +123,3 @@ extern const hf_optimiser_kind hf_optimiser_nsga; /* NSGA-II for optimize.front 
 #undef HF_OPTIMISER_DECLARE
 
 HF_API_END
-#endif

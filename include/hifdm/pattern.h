@@ -12,8 +12,7 @@
  * All positions and directions are in the frame of the scene. A direction has the angle theta from +z and the angle phi
  * from +x towards +y. A cut is a half plane of constant phi, extended to negative theta. The time dependence is exp(+j
  * w t). */
-#ifndef HIFDM_PATTERN_H
-#define HIFDM_PATTERN_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/facets.h>
@@ -143,4 +142,3 @@ hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pa
 void hf_pattern_table_free(hf_pattern_table *table);
 
 HF_API_END
-#endif

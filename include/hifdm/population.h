@@ -3,8 +3,7 @@
  *
  * An optimiser (optimiser.h) proposes the designs, a batch evaluates them, and a store saves them. The functions of
  * this header rank the results. The functions of this header do not determine how the next generation is made. */
-#ifndef HIFDM_POPULATION_H
-#define HIFDM_POPULATION_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/model.h>
@@ -119,4 +118,3 @@ static inline double hf_population_clamp(const hf_population *population, int i_
 void hf_population_link(const hf_population *population, const hf_model *model, double *design);
 
 HF_API_END
-#endif

@@ -6,8 +6,7 @@
  * (src/run/problem_parts.h). Pipeline:
  *
  *   case file -> hf_case -> scene, truss -> model -> form-finding -> initial design, evaluator -> batch */
-#ifndef HIFDM_PROBLEM_H
-#define HIFDM_PROBLEM_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/batch.h>
@@ -93,4 +92,3 @@ hf_status hf_problem_has_slopes(const hf_problem *problem, hf_messages *messages
 void hf_problem_free(hf_problem *problem);
 
 HF_API_END
-#endif

@@ -7,8 +7,7 @@
  * /search/population with one value per individual. The columns of `hifdm evaluate`, of the ledger of a sweep and of
  * the merged study also follow from the list. A new figure needs a row of the list and the code that computes the
  * figure. */
-#ifndef HIFDM_RESULT_H
-#define HIFDM_RESULT_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/settings.h>
@@ -260,4 +259,3 @@ typedef struct {
 } hf_history;
 
 HF_API_END
-#endif

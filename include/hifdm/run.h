@@ -8,8 +8,7 @@
  *
  * A run prints nothing and keeps no state outside its arguments. One process may execute any number of runs, one after
  * the other or at the same time in different threads. */
-#ifndef HIFDM_RUN_H
-#define HIFDM_RUN_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/problem.h>
@@ -113,4 +112,3 @@ hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char o
                       hf_messages *messages);
 
 HF_API_END
-#endif

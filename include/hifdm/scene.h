@@ -3,8 +3,7 @@
  *
  * A scene comes from a generator (generate.h), from arrays (scene_arrays.h) or from CSV files (scene_import). A scene
  * is checked once and does not change afterwards. Lengths are in m, forces in N and force densities in N/m. */
-#ifndef HIFDM_SCENE_H
-#define HIFDM_SCENE_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/cable_law.h>
@@ -85,4 +84,3 @@ bool hf_scene_numbers_agree(size_t n, const double *a, const double *b);
 void hf_scene_free(hf_scene *scene);
 
 HF_API_END
-#endif

@@ -1,7 +1,6 @@
 /* scene_arrays - a scene from plain arrays, for programs whose net is in memory and not in CSV files.
  * Stability: stable. */
-#ifndef HIFDM_SCENE_ARRAYS_H
-#define HIFDM_SCENE_ARRAYS_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/scene.h>
@@ -37,4 +36,3 @@ hf_status hf_scene_from_arrays(const hf_scene_arrays *arrays, const double group
                                hf_messages *messages);
 
 HF_API_END
-#endif

@@ -3,8 +3,7 @@
  *
  * hf_config_load sets the values from a case file, and `hifdm schema` describes their keys. A program may also set the
  * values itself. */
-#ifndef HIFDM_SETTINGS_H
-#define HIFDM_SETTINGS_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <stdbool.h>
@@ -406,4 +405,3 @@ typedef struct {
 } hf_surface_settings;
 
 HF_API_END
-#endif

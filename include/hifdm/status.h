@@ -4,8 +4,7 @@
  * The library distinguishes three classes of errors. A programming error fails an assert. A design without a shape gets
  * a status and its numbers are NaN. The batch continues with the other designs. A run that fails returns a status and
  * messages to its caller. The library never prints and never exits. */
-#ifndef HIFDM_STATUS_H
-#define HIFDM_STATUS_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <stdbool.h>
@@ -126,4 +125,3 @@ const char *hf_messages_location(const hf_messages *messages, char text[HF_LOCAT
 void hf_messages_free(hf_messages *messages);
 
 HF_API_END
-#endif

@@ -88,8 +88,7 @@
  *
  * hifdm also reads files of version 0.2. A finished file also contains the names of version 0.2, as soft links and as
  * copies of attributes (src/manual/renames.md). Version 0.4 will no longer write the names of version 0.2. */
-#ifndef HIFDM_STORE_H
-#define HIFDM_STORE_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/config.h>
@@ -304,4 +303,3 @@ const char *hf_store_version(void);
 bool hf_store_quiet(void);
 
 HF_API_END
-#endif

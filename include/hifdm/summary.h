@@ -3,8 +3,7 @@
  *
  * The command `run` prints the summary and stores it with the results. The command `show` prints the summary again. The
  * figures of the shape of a stage are those of HF_RESULT_LIST in <hifdm/result.h>. */
-#ifndef HIFDM_SUMMARY_H
-#define HIFDM_SUMMARY_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/cable_set.h>
@@ -230,4 +229,3 @@ bool hf_summary_has_shape(const hf_summary *summary, hf_stage stage);
 double hf_summary_utilisation(const hf_summary *summary);
 
 HF_API_END
-#endif

@@ -11,8 +11,7 @@
  * The target surface is the cylinder z = x^2/(4f), with its generatrix along y, or the paraboloid z = (x^2 + y^2)/(4f).
  * Let dz be the height of a point above the target surface, and t the slope at this point, x/(2f) or r/(2f). The error
  * along the normal is dz / sqrt(1 + t^2), and the error of the half path length is dz / (1 + t^2). */
-#ifndef HIFDM_SURFACE_H
-#define HIFDM_SURFACE_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/facets.h>
@@ -174,4 +173,3 @@ double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB);
 
 HF_API_END
-#endif

@@ -7,8 +7,7 @@
  *
  * The errors of a sample depend only on (seed, sample, error). Samples may therefore be computed in any order, by any
  * thread and on any machine. */
-#ifndef HIFDM_TOLERANCE_H
-#define HIFDM_TOLERANCE_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/surface.h>
@@ -103,4 +102,3 @@ typedef struct {
 #undef HF_TOLERANCE_MEMBER
 
 HF_API_END
-#endif

@@ -4,8 +4,7 @@
  * A generator makes a truss, or truss_import reads it from CSV files. A truss is checked once and does not change
  * afterwards. hf_frame solves it. A node has six degrees of freedom (dofs): displacements along x, y, z in m, and
  * rotations about x, y, z in rad. */
-#ifndef HIFDM_TRUSS_H
-#define HIFDM_TRUSS_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/generate.h>
@@ -245,4 +244,3 @@ double hf_truss_member_length(const hf_truss *truss, int i_member);
 double hf_truss_mass(const hf_truss *truss);
 
 HF_API_END
-#endif

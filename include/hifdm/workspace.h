@@ -6,8 +6,7 @@
  * length_m and tension_N, the laws and target values in effect, loose, and displacement_m of the attachments. After a
  * coupling, the workspace also holds attachment_force_N. All other fields are scratch memory and have no meaning
  * between calls. The scratch fields may change in any version. */
-#ifndef HIFDM_WORKSPACE_H
-#define HIFDM_WORKSPACE_H
+#pragma once
 
 #include <hifdm/api.h>
 #include <hifdm/model.h>
@@ -143,4 +142,3 @@ bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace)
 void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
 
 HF_API_END
-#endif

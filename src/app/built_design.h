@@ -1,6 +1,5 @@
 /* built_design - makes the as-built net of a case, at the shape of its form-finding or of a result. */
-#ifndef HIFDM_BUILT_DESIGN_H
-#define HIFDM_BUILT_DESIGN_H
+#pragma once
 
 #include "app/options.h"
 #include <hifdm/built.h>
@@ -14,5 +13,3 @@ hf_status hf_built_design_make(const hf_options *options, hf_problem *problem, h
 
 /* Checks that the command line determines the design that was built. Returns HF_OK or HF_BAD_USAGE. */
 hf_status hf_built_design_check(const hf_options *options, const hf_case *settings, hf_messages *messages);
-
-#endif

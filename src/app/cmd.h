@@ -1,7 +1,6 @@
 /* cmd - lists the commands of `hifdm`. The file cmd_NAME.c holds the command NAME: its row and its function. A new
  * command needs such a file, and its name in HF_COMMANDS. Its options are rows in options.c. */
-#ifndef HIFDM_CMD_H
-#define HIFDM_CMD_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -53,5 +52,3 @@ enum { HF_N_COMMAND = HF_COMMANDS(HF_COMMAND_COUNT) };
 #undef HF_COMMAND_COUNT
 
 extern const hf_command *const hf_command_table[HF_N_COMMAND];
-
-#endif

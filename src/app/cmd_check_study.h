@@ -1,6 +1,5 @@
 /* cmd_check_study - runs `hifdm check` of a study: it prints what `hifdm sweep` would do. */
-#ifndef HIFDM_CMD_CHECK_STUDY_H
-#define HIFDM_CMD_CHECK_STUDY_H
+#pragma once
 
 #include "run/check.h"
 #include <stdio.h>
@@ -15,5 +14,3 @@ hf_status hf_cmd_check_case(const hf_check_request *request, const char *name, h
  * Returns HF_OK, HF_BAD_USAGE, HF_BAD_CASE with all faults of study, base case and points, or HF_POINTS_FAILED if some
  * points cannot be run. Call hf_check_free in any case. */
 hf_status hf_cmd_check_study(const hf_check_request *request, hf_check *check, FILE *file, hf_messages *messages);
-
-#endif

@@ -1,7 +1,6 @@
 /* cmd_help - declares what the three forms of `hifdm help` share: text, manual page and completion. All three are made
  * from the tables of commands, of options, and of the keys of a case file. */
-#ifndef HIFDM_CMD_HELP_H
-#define HIFDM_CMD_HELP_H
+#pragma once
 
 #include "app/options.h"
 
@@ -29,5 +28,3 @@ static inline const char *hf_help_or_nothing(const char *word)
 {
     return word ? word : "";
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* options - reads the options of the command line. One table of rows serves the reading of the command line, the help,
  * the manual page and the completion for bash. */
-#ifndef HIFDM_OPTIONS_H
-#define HIFDM_OPTIONS_H
+#pragma once
 
 #include "app/cmd.h"
 #include "app/progress.h"
@@ -81,5 +80,3 @@ bool hf_option_goes_with(const hf_option *option, const hf_command *command);
 hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages);
 
 void hf_options_free(hf_options *options);
-
-#endif

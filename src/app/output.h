@@ -1,7 +1,6 @@
 /* output - writes to readers that may have stopped reading. A request to stop (base/signals.h) is noticed while the
  * program waits for such a reader. */
-#ifndef HIFDM_OUTPUT_H
-#define HIFDM_OUTPUT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,5 +16,3 @@ bool hf_output_has_colour(int file);
 
 /* Returns a stream that writes in this way to standard output, or stdout itself if memory runs out. */
 FILE *hf_output_stream(void);
-
-#endif

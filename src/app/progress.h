@@ -1,6 +1,5 @@
 /* progress - shows the progress of a run to people, and to programs that watch it. */
-#ifndef HIFDM_PROGRESS_H
-#define HIFDM_PROGRESS_H
+#pragma once
 
 #include <hifdm/run.h>
 
@@ -34,5 +33,3 @@ void hf_progress_show(void *progress, const hf_run_progress *now);
 
 /* Clears the line on the terminal, if there is one. */
 void hf_progress_end(hf_progress *progress);
-
-#endif

@@ -1,7 +1,6 @@
 /* study_files - finds and reads the files of a study, for the commands sweep, status, merge and check: the study itself
  * and the state of its points. */
-#ifndef HIFDM_STUDY_FILES_H
-#define HIFDM_STUDY_FILES_H
+#pragma once
 
 #include "app/options.h"
 #include "store/ledger.h"
@@ -16,5 +15,3 @@ hf_status hf_study_files_name(const char *given, const char *study, const char *
  * study and points in any case. */
 hf_status hf_study_files_read(const hf_options *o, bool demand_folder, char folder[HF_PATH_SIZE], hf_study *study,
                               hf_points *points, hf_messages *messages);
-
-#endif

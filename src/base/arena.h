@@ -13,8 +13,7 @@
  *     object->block = arena.block; // the owner frees it with hf_arena_free_block
  *
  * A struct may also contain its arena. Its owner then frees it with hf_arena_free(&object.arena). */
-#ifndef HIFDM_ARENA_H
-#define HIFDM_ARENA_H
+#pragma once
 
 #include <hifdm/status.h>
 
@@ -70,5 +69,3 @@ static inline void hf_arena_free_block(void *block)
 {
     hf_arena_free(&(hf_arena){.block = block});
 }
-
-#endif

@@ -5,8 +5,7 @@
  * it starts its threads. The server is a copy with one thread, and it forks the other children. If the process is not
  * ours, such as that of Python, another program takes the place of the copy (hf_child_spawn). On Linux, a copy ends
  * when its parent ends. */
-#ifndef HIFDM_CHILD_H
-#define HIFDM_CHILD_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -57,5 +56,3 @@ void hf_child_server_end(void);
 typedef void hf_child_work(const char *text);
 #define HF_CHILD_TEXT_SIZE 8192
 bool hf_child_ask(hf_child_work *work, const char *text, hf_child_end *end);
-
-#endif

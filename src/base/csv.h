@@ -6,8 +6,7 @@
  * A spreadsheet can take an id such as =1+1 or -a for a formula. Such ids are written with an apostrophe in
  * front, and the reader removes one apostrophe in front of such a text. So every id that can be read is also
  * read back unchanged. */
-#ifndef HIFDM_CSV_H
-#define HIFDM_CSV_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -98,5 +97,3 @@ char *hf_csv_keep(int n_list, const hf_csv_texts *list);
  * of line, or has blanks at its ends or a leading '#'. It begins with an apostrophe if a spreadsheet would take it
  * for a formula. */
 void hf_csv_write_id(const char *id, FILE *file);
-
-#endif

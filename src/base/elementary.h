@@ -2,8 +2,7 @@
  *
  * The last digit of such a function in the C library depends on the processor and on the version of the library. The
  * functions here consist of sums, products, quotients and roots of doubles in a fixed order. */
-#ifndef HIFDM_ELEMENTARY_H
-#define HIFDM_ELEMENTARY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -54,5 +53,3 @@ double hf_normal_quantile(double probability);
 
 /* Returns 2^x for |x| < 1000. The relative error is below 4e-16. */
 double hf_power_of_two(double x);
-
-#endif

@@ -3,8 +3,7 @@
  * A call that a signal interrupts is repeated. A transfer that ends early continues where it ended, until it is
  * complete or fails with a reason. Unless stated otherwise, the functions return 0, or -1 and errno; the caller
  * writes the message. */
-#ifndef HIFDM_FILE_IO_H
-#define HIFDM_FILE_IO_H
+#pragma once
 
 #include <errno.h>
 #include <hifdm/status.h>
@@ -61,5 +60,3 @@ bool hf_file_io_await_room(int file, int grace_ms);
  * file is wrong, and HF_INTERRUPTED for EINTR. Returns HF_NO_MEMORY or HF_IO if the machine is at fault; the same call
  * may succeed later. */
 hf_status hf_file_io_fault(int why, hf_status otherwise);
-
-#endif

@@ -11,8 +11,7 @@
  * refused, because in a shared folder it could point to any file of the user. The same holds for an output folder. A
  * link to a folder further up the path may belong to somebody else, unless everybody may write to the folder that
  * contains it (such as /tmp). */
-#ifndef HIFDM_FILE_OUT_H
-#define HIFDM_FILE_OUT_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <limits.h>
@@ -120,5 +119,3 @@ int hf_file_out_keep(const char *name, bool *was_there);
 /* Makes a new file without a name and returns its descriptor, or -1 and errno. It is in the folder of the file
  * `beside`, or in the folder for temporary files if `beside` is NULL. It disappears when it is closed. */
 int hf_file_out_scratch(const char *beside);
-
-#endif

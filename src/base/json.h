@@ -1,7 +1,6 @@
 /* json - writes JSON to a stream. The writer hf_json puts commas where they are needed. The functions for the page of
  * `hifdm report` write compact lists. */
-#ifndef HIFDM_JSON_H
-#define HIFDM_JSON_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -68,5 +67,3 @@ hf_json_packed hf_json_pack(const char *key, const char *type, FILE *file);
 void hf_json_pack_value(hf_json_packed *packed, double value);
 void hf_json_pack_end(hf_json_packed *packed);
 void hf_json_pack_values(const char *key, const char *type, const double *value, int n, FILE *file); /* all steps */
-
-#endif

@@ -4,8 +4,7 @@
  * All instruction sets give the same bits. There are always eight lanes and one order of operations. The only
  * operations are IEEE + - * /, square root and fused multiply-add. The source marks every fused product
  * (`plus_product`, `less_product`, C's fma()); the compiler fuses nothing else (see CODEGEN in the Makefile). */
-#ifndef HIFDM_LANE_H
-#define HIFDM_LANE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -233,5 +232,4 @@ INLINE lanes lanes_root(lanes a)
     return a;
 }
 
-#endif
 #endif

@@ -3,8 +3,7 @@
  *
  *     one thread                 hf_later_serve(&list);
  *     each of n_worker threads   hf_later_join(&list); ... hf_later_do(work, context); ... hf_later_leave(&list); */
-#ifndef HIFDM_LATER_H
-#define HIFDM_LATER_H
+#pragma once
 
 #include <pthread.h>
 
@@ -35,5 +34,3 @@ void hf_later_leave(hf_later_list *list);
 /* Calls work(context) once. The serving thread makes the call if the calling thread has joined a list and fewer than
  * HF_LATER_MAX items are waiting. Otherwise the calling thread makes it at once. */
 void hf_later_do(void (*work)(void *context), void *context);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * The name of a path is the part after its last slash. The ending of a name begins at its last dot. A dot at the start
  * of a name marks a hidden file and begins no ending. */
-#ifndef HIFDM_PATH_H
-#define HIFDM_PATH_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -48,5 +47,3 @@ bool hf_path_is_same_inode(const struct stat *a, const struct stat *b);
 
 /* Returns true if the open file is still the file that `path` leads to. */
 bool hf_path_leads_to(const char *path, int file);
-
-#endif

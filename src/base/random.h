@@ -1,7 +1,6 @@
 /* random - the generator of all pseudo-random numbers: SplitMix64 (Steele, Lea & Flood 2014). Results store the seed
  * instead of the random numbers, so the generated numbers must never change. */
-#ifndef HIFDM_RANDOM_H
-#define HIFDM_RANDOM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -38,5 +37,3 @@ inline double hf_random_uniform(hf_random *random)
 {
     return (double)(hf_random_next(random) >> 11) * 0x1p-53;
 }
-
-#endif

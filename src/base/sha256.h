@@ -1,10 +1,7 @@
 /* sha256 - the digest (FIPS 180-4) that links a result file to its case. None of the libraries that we use has one. */
-#ifndef HIFDM_SHA256_H
-#define HIFDM_SHA256_H
+#pragma once
 
 #include <stddef.h>
 
 /* Writes the digest of the `length` bytes at `data` as 64 lower-case hexadecimal digits and a NUL. */
 void hf_sha256(const void *data, size_t length, char hex[65]);
-
-#endif

@@ -1,6 +1,5 @@
 /* signals - requests to stop. Only the program installs handlers, because they belong to the whole process. */
-#ifndef HIFDM_SIGNALS_H
-#define HIFDM_SIGNALS_H
+#pragma once
 
 #include <signal.h>
 
@@ -11,5 +10,3 @@ const volatile sig_atomic_t *hf_signals_watch(void);
 
 /* Returns the same flag. It stays 0 in a program that never calls hf_signals_watch. */
 const volatile sig_atomic_t *hf_signals_request(void);
-
-#endif

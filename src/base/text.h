@@ -1,7 +1,6 @@
 /* text - reads whole files, reads numbers independently of the locale, checks UTF-8, makes texts of unknown origin safe
  * to show, and finds the word nearest to a misspelt one. */
-#ifndef HIFDM_TEXT_H
-#define HIFDM_TEXT_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -71,5 +70,3 @@ void hf_text_hint(const char *word, const char *const *candidates, int n_candida
 
 /* Returns true for a number with a decimal comma, such as 1,5. */
 bool hf_text_has_decimal_comma(const char *text);
-
-#endif

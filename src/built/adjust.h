@@ -4,8 +4,7 @@
  * Output is an ordered list of adjustments in whole steps, each with the figure that it reaches and its uncertainty.
  * The adjustments are chosen on a linear model of the shape. The adjusted shape is then solved and linearised again
  * until the choice no longer changes. */
-#ifndef HIFDM_ADJUST_H
-#define HIFDM_ADJUST_H
+#pragma once
 
 #include "built/estimate.h"
 #include "built/turnbuckles.h"
@@ -74,5 +73,3 @@ int hf_adjust_steps(const hf_adjust_settings *settings);
  * no value; or the status of a shape that cannot be solved. Call hf_adjust_free in any case. */
 hf_status hf_adjust_find(hf_estimate *estimate, const hf_adjust_task *task, hf_adjustment *adjustment);
 void hf_adjust_free(hf_adjustment *adjustment);
-
-#endif

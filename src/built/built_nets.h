@@ -8,8 +8,7 @@
  * Each net is cut for the shape of the design and solved from that shape. built_batch solves samples eight at a time;
  * load cases are solved one by one. An hf_built_nets does not change after it is made. Each thread has its own working
  * memory. */
-#ifndef HIFDM_BUILT_NETS_H
-#define HIFDM_BUILT_NETS_H
+#pragma once
 
 #include "built/errors.h"
 #include <hifdm/built_batch.h>
@@ -35,5 +34,3 @@ void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_f
                         const hf_load_cases *load_cases, const double *attachment_move_m,
                         const hf_tolerance_settings *tolerance, const hf_built_heat *heat, int n_sample,
                         hf_built_nets *nets);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * It gives the exact mean of psi^2 to first order, and the share of each error in it. It takes one solve for each
  * coordinate of an inner node, whatever the number of errors. */
-#ifndef HIFDM_COVARIANCE_H
-#define HIFDM_COVARIANCE_H
+#pragma once
 
 #include "built/errors.h"
 
@@ -28,5 +27,3 @@ void hf_covariance_free(hf_covariance *covariance);
 
 /* Returns psi, m, of the nominal net after the displacements move_m [n_dof]; NULL: without displacements. */
 double hf_covariance_psi_m(const hf_built_linear *linear, const double *move_m);
-
-#endif

@@ -4,8 +4,7 @@
  * GSL's sequence has at most 40 dimensions. Independent normal errors may be rotated. Their dimensions are the leading
  * right singular vectors of the linear model from errors to positions. Uniform errors may not be rotated, so their
  * dimensions are the single errors with the largest shares. */
-#ifndef HIFDM_DIRECTIONS_H
-#define HIFDM_DIRECTIONS_H
+#pragma once
 
 #include "built/covariance.h"
 
@@ -38,5 +37,3 @@ void hf_directions_points(hf_directions *directions, long first, int count, doub
 /* Computes the numbers z of a sample. Those in the directions of the sequence come from its point [n], all others from
  * hf_built_errors_draw. */
 void hf_directions_draw(const hf_directions *directions, long sample, const double *point, double *z);
-
-#endif

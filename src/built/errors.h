@@ -4,8 +4,7 @@
  *
  * Errors are numbered by kind. A number depends on (seed, sample, kind, item) alone. Other kinds of errors and the
  * order of nodes in the model do not change it. */
-#ifndef HIFDM_ERRORS_H
-#define HIFDM_ERRORS_H
+#pragma once
 
 #include "built/linear.h"
 #include <hifdm/built_batch.h>
@@ -96,5 +95,3 @@ void hf_built_errors_strain(const hf_built_errors *errors, double scale, const d
 /* Computes the transpose of hf_built_errors_strain: from the output of hf_built_linear_transpose to the derivatives
  * with respect to the numbers, slope_z [n]. */
 void hf_built_errors_slope(const hf_built_errors *errors, const double *strain, const double *slope, double *slope_z);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * It minimises (M40) by the Gauss-Newton method. Each step solves one saddle-point system (built/saddle.h), and each
  * trial solves the whole shape. */
-#ifndef HIFDM_ESTIMATE_H
-#define HIFDM_ESTIMATE_H
+#pragma once
 
 #include "built/near.h"
 #include "built/saddle.h"
@@ -83,5 +82,3 @@ hf_status hf_estimate_doubt(hf_estimate *estimate, double *move_m, double *sigma
 
 /* Computes RMS and standard deviation of a quantity that has one value for each sample. */
 void hf_estimate_spread(const double value[HF_ESTIMATE_SAMPLES], double *rms, double *deviation);
-
-#endif

@@ -4,8 +4,7 @@
  * One factor of the Hessian at a shape serves all right-hand sides. Vectors [n_dof] have the entry 3*row + c for
  * coordinate c of a node. Free nodes come first, then attachments, then supports on rigid ground. Between calls of
  * hf_built_linear_take the model is constant. Threads share it, each with its own scratch. */
-#ifndef HIFDM_LINEAR_H
-#define HIFDM_LINEAR_H
+#pragma once
 
 #include "linalg/packed_band.h"
 #include "solve/schur.h"
@@ -64,5 +63,3 @@ void hf_built_linear_tension(const hf_built_linear *linear, const double *strain
  * respect to positions on entry. On return it contains those with respect to the resting positions of supports; entries
  * of free nodes are then meaningless. strain [n][n_cable] receives the derivatives with respect to strain_N. */
 void hf_built_linear_transpose(const hf_built_linear *linear, int n, double *slope, double *strain, double *scratch);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * The table is compared with the nominal net before it is used. This finds wrong units, another frame and mixed-up
  * ids. */
-#ifndef HIFDM_MEASURED_H
-#define HIFDM_MEASURED_H
+#pragma once
 
 #include "built/linear.h"
 
@@ -28,5 +27,3 @@ void hf_measured_free(hf_measured *measured);
  * another unit, another frame, or single nodes by name and line. */
 hf_status hf_measured_check(const char *path, const hf_built *built, const double *expected_m,
                             const hf_measured *measured, hf_messages *messages);
-
-#endif

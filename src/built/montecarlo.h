@@ -1,6 +1,5 @@
 /* montecarlo - samples of an as-built net: their errors, their shapes and their measures (METHOD section 12). */
-#ifndef HIFDM_MONTECARLO_H
-#define HIFDM_MONTECARLO_H
+#pragma once
 
 #include "built/directions.h"
 #include <hifdm/built_batch.h>
@@ -77,5 +76,3 @@ bool hf_montecarlo_requires_surface(const hf_tolerance_settings *settings);
  * It is 1 when the factor is at least *scale, the largest one tried (hf_built_errors_largest_scale). It is -1 when the
  * factor is below *scale, the smallest one tried. Returns the status of hf_montecarlo_run. */
 hf_status hf_montecarlo_find_scale(hf_montecarlo *montecarlo, int n, double *scale, int *bound);
-
-#endif

@@ -3,8 +3,7 @@
  * Chord steps (search/chord.h) use one matrix, factored at the nominal shape and shared by all threads. They solve
  * eight nets at a time, one in each SIMD lane. Newton's method solves one net, also from the nominal shape. No
  * operation mixes lanes, so the shape of a net depends neither on the other nets nor on the thread. */
-#ifndef HIFDM_NEAR_H
-#define HIFDM_NEAR_H
+#pragma once
 
 #include "search/chord.h"
 #include <hifdm/built.h>
@@ -61,5 +60,3 @@ hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *lanes, int la
  * hf_built_solve. Returns false when it does not converge. Otherwise the status is HF_OK and the workspace holds the
  * shape. */
 bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *result);
-
-#endif

@@ -3,8 +3,7 @@
  *
  * Each cable has its own error. Cables share one number for each spool and one for the temperature. The covariance is
  * therefore a diagonal and a few columns. */
-#ifndef HIFDM_PRIOR_H
-#define HIFDM_PRIOR_H
+#pragma once
 
 #include "built/errors.h"
 
@@ -30,5 +29,3 @@ typedef struct {
 hf_status hf_prior_make(const hf_built *built, const hf_tolerance_settings *settings, const double *expansion_per_K,
                         hf_prior *prior);
 void hf_prior_free(hf_prior *prior);
-
-#endif

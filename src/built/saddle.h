@@ -10,8 +10,7 @@
  * errors, and numbers z that cables share. The errors of lengths are then the cables' own ones plus U z, with z =
  * U'B'p. No matrix is inverted that may be singular. B sigma^2 B' is singular across a flat net, and W is singular when
  * nodes were not measured. */
-#ifndef HIFDM_SADDLE_H
-#define HIFDM_SADDLE_H
+#pragma once
 
 #include "built/linear.h"
 
@@ -96,5 +95,3 @@ typedef struct {
 /* Solves n <= HF_SADDLE_PANEL independent right-hand sides; work is [n][n_band]. Returns HF_OK; or HF_SINGULAR
  * when rounding prevents a solution, in which case no solution is written. */
 hf_status hf_saddle_solve(const hf_saddle *saddle, int n, hf_saddle_answer *answer, double *work);
-
-#endif

@@ -1,7 +1,6 @@
 /* statistics - figures of any number of samples, which are read block by block. The memory does not depend on their
  * number. */
-#ifndef HIFDM_STATISTICS_H
-#define HIFDM_STATISTICS_H
+#pragma once
 
 #include "built/montecarlo.h"
 
@@ -34,5 +33,3 @@ void hf_statistics_ranks(long n, double part, long *low, long *high);
 /* Computes the 95 % confidence interval of a probability when `met` of n trials have succeeded (Clopper and
  * Pearson). */
 void hf_statistics_interval(long n, long met, double *low, double *high);
-
-#endif

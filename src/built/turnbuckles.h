@@ -4,8 +4,7 @@
  * The residuals are r + J a for adjustments a = step * whole number; the functions read only J'J, J'r and r'r.
  * Turnbuckles are added greedily, with refits and exchanges. Tensions are linear in the adjustments, too, and none may
  * fall further than its room. A choice requests the changes of tension only for the turnbuckles that it uses. */
-#ifndef HIFDM_TURNBUCKLES_H
-#define HIFDM_TURNBUCKLES_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -58,5 +57,3 @@ int hf_turnbuckles_next(const hf_turnbuckles_problem *problem, const int *steps,
 /* Computes the best adjustments adjustment_m [n] without rounding to steps and without limits on tensions, within
  * steps_max * step_m. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_turnbuckles_best(const hf_turnbuckles_problem *problem, double *adjustment_m);
-
-#endif

@@ -1,6 +1,5 @@
 /* config_check - checks of keys that must fit together, and values that one key determines for another. */
-#ifndef HIFDM_CONFIG_CHECK_H
-#define HIFDM_CONFIG_CHECK_H
+#pragma once
 
 #include "case/config_fault.h"
 
@@ -24,5 +23,3 @@ void hf_config_complete(hf_case *settings);
 /* Returns the surface that a generated net determines; unknown members are 0. *key is its key of the focal length; it
  * is unchanged without a generated net. */
 hf_surface_settings hf_config_known_surface(const hf_case *settings, const char **key);
-
-#endif

@@ -1,6 +1,5 @@
 /* config_fault - faults of a case, each with its location: file, line and column, or the --set argument. */
-#ifndef HIFDM_CONFIG_FAULT_H
-#define HIFDM_CONFIG_FAULT_H
+#pragma once
 
 #include "case/config_key.h"
 
@@ -37,5 +36,3 @@ static inline char *hf_config_where(const hf_config_faults *faults, int i_locati
 {
     return faults->where_given + (size_t)i_location * HF_CONFIG_WHERE_SIZE;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* config_key - finds keys of a case by their paths, such as "form.stop", also in rows of lists
  * ("optimize.objective.0.set"). */
-#ifndef HIFDM_CONFIG_KEY_H
-#define HIFDM_CONFIG_KEY_H
+#pragma once
 
 #include <hifdm/config.h>
 #include <stdbool.h>
@@ -30,5 +29,3 @@ int hf_key_n_location(void);
 
 const hf_list *hf_key_find_list(const char *path); /* NULL if there is none */
 int hf_key_n_row(const hf_case *settings, const hf_list *list);
-
-#endif

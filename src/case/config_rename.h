@@ -1,6 +1,5 @@
 /* config_rename - the names of keys and words before version 0.3. */
-#ifndef HIFDM_CONFIG_RENAME_H
-#define HIFDM_CONFIG_RENAME_H
+#pragma once
 
 #include "case/config_fault.h"
 
@@ -11,5 +10,3 @@ bool hf_config_rename(hf_config_faults *faults, size_t line, size_t column, cons
 
 /* Writes the name that a key, or a key with its word, had in version 0.2. */
 void hf_config_old_name(const char *now, char old[HF_KEY_SIZE]);
-
-#endif

@@ -1,6 +1,5 @@
 /* config_value - reads one value of a case file and checks it against its row of the table. */
-#ifndef HIFDM_CONFIG_VALUE_H
-#define HIFDM_CONFIG_VALUE_H
+#pragma once
 
 #include "case/config_fault.h"
 
@@ -21,5 +20,3 @@ void hf_config_range_words(const hf_field *field, char words[HF_CONFIG_RANGE_SIZ
 
 /* Sets *to to the value of a key in a row that is not given and has no default. */
 void hf_config_no_value(const hf_field *field, void *to);
-
-#endif

@@ -14,8 +14,7 @@
  * A point is identified by its values, not by its number. Its id is the first 12 digits of the SHA-256 of its sorted
  * lines "key=value", with the names of version 0.2. If an axis grows, or a version renames a key, the existing points
  * keep their ids, files and seeds. */
-#ifndef HIFDM_STUDY_H
-#define HIFDM_STUDY_H
+#pragma once
 
 #include "case/config_key.h"
 #include <stdbool.h>
@@ -121,5 +120,3 @@ hf_status hf_study_make_points(hf_study *study, hf_messages *messages);
 /* Returns "key=value" with the value in canonical form. The caller frees it; NULL if memory runs out. The value must be
  * valid for the key. */
 char *hf_study_canonical(const hf_key *key, const char *value);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * Measured with 512-bit vectors and n = 437: factor and three solutions take 40 % of the time of the reference LAPACK
  * at half-bandwidth 21, and 10 % at half-bandwidth 65. */
-#ifndef HIFDM_BAND_H
-#define HIFDM_BAND_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <signal.h>
@@ -61,5 +60,3 @@ double hf_band_condition_indefinite(int n, int half_bandwidth, const double *gen
 /* Computes rows `first` to end-1 of the lower triangle of A A' for a dense A [n][n_column] with row length lda. Writes
  * them to gram [n][ldg], with some entries of the upper triangle of these rows. `first` must be a multiple of 4. */
 void hf_band_gram(int first, int end, int n_column, const double *a, int lda, double *gram, int ldg);
-
-#endif

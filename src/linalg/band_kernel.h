@@ -5,8 +5,7 @@
  * processed in strips of eight, whatever the width of a vector is. In the factorisation each entry has one accumulator,
  * to which the columns contribute in rising order. On a processor without fused multiply-add the bits are the same, but
  * the kernels are slow (base/lane.h). */
-#ifndef HIFDM_BAND_KERNEL_H
-#define HIFDM_BAND_KERNEL_H
+#pragma once
 
 #include "base/lane.h"
 
@@ -19,5 +18,3 @@ typedef struct {
 } hf_band_kernels;
 
 extern const hf_band_kernels HF_LANE_EACH(hf_band_kernels);
-
-#endif

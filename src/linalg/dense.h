@@ -1,7 +1,6 @@
 /* dense - dense square matrices, stored by columns: product, and LU with partial pivoting. The order of operations is
  * fixed, so the bits are the same on every machine. The functions are meant for a few hundred rows. */
-#ifndef HIFDM_DENSE_H
-#define HIFDM_DENSE_H
+#pragma once
 
 /* Computes c = a b, all [n][n] by columns. c must not be a or b. */
 void hf_dense_multiply(int n, const double *a, const double *b, double *c);
@@ -12,5 +11,3 @@ int hf_dense_factor(int n, double *a, int *pivot);
 
 /* Solves for the right-hand sides b [n_rhs][n]; the solutions replace them. */
 void hf_dense_solve(int n, const double *factor, const int *pivot, int n_rhs, double *b);
-
-#endif

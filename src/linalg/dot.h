@@ -1,6 +1,5 @@
 /* dot - inner products of vectors, summed in the order of the entries, and sums of multiples of vectors. */
-#ifndef HIFDM_DOT_H
-#define HIFDM_DOT_H
+#pragma once
 
 #include <stddef.h>
 
@@ -21,5 +20,3 @@ static inline void hf_subtract(size_t n, double factor, const double *restrict x
     for (size_t i = 0; i < n; i++)
         y[i] -= factor * x[i];
 }
-
-#endif

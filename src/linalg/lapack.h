@@ -2,8 +2,7 @@
  *
  * Programs that use this library do not link LAPACK. A command that factors nothing loads neither LAPACK nor its BLAS.
  * Any shared library with the routines below can be used. */
-#ifndef HIFDM_LAPACK_H
-#define HIFDM_LAPACK_H
+#pragma once
 
 #include <hifdm/status.h>
 
@@ -50,5 +49,3 @@ void (*hf_lapack_find(const char *name))(void);
 /* Returns the path of the loaded library, or "not loaded". For OpenBLAS the text also contains its configuration and
  * the kernel that it chose. Results store this text as provenance. */
 const char *hf_lapack_library(void);
-
-#endif

@@ -6,8 +6,7 @@
  * first row to `width` after its last row. The entries of the rows (columns) of a block are adjacent, with zeros
  * outside the band. Each entry is divided by the diagonal entry of its row (column). So a solve starts each row with
  * right-hand side / diagonal, and the row is finished after its last product; no division follows. */
-#ifndef HIFDM_PACKED_BAND_H
-#define HIFDM_PACKED_BAND_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/lane.h"
@@ -54,5 +53,3 @@ size_t hf_packed_band_rows(const hf_packed_band *band);
 /* Solves in place for n_rhs right-hand sides, b [n_rhs][ldb] with ldb >= n. lanes [hf_packed_band_rows][HF_LANES] is
  * scratch of the calling thread. Its first `width` rows must be zero. */
 void hf_packed_band_back_solve(const hf_packed_band *band, double *lanes, int n_rhs, double *b, size_t ldb);
-
-#endif

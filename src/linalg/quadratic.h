@@ -2,8 +2,7 @@
  * limits a'x >= b. The method is the dual method of Goldfarb and Idnani (Math. Program. 27, 1983). It starts at the
  * unconstrained minimum and adds one violated limit after the other. So the caller only has to find the limit that is
  * violated most; no list of all limits is needed. */
-#ifndef HIFDM_QUADRATIC_H
-#define HIFDM_QUADRATIC_H
+#pragma once
 
 #include "base/arena.h"
 
@@ -60,5 +59,3 @@ hf_status hf_quadratic_solve(hf_quadratic *quadratic, const double *hessian, con
 /* Computes sum [ld] = weight[0] column 0 + weight[1] column 1 + ... of J [n][ld], added in this order. ld must be a
  * multiple of HF_LANES. */
 void hf_quadratic_combine(int ld, int n, const double *weight, const double *J, double *sum);
-
-#endif

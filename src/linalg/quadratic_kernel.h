@@ -1,8 +1,7 @@
 /* quadratic_kernel - the inner loops of quadratic programmes, compiled once for each instruction set. quadratic.c
  * chooses one at run time. All give the same bits as scalar loops: products are not fused with sums, and each entry is
  * accumulated in the same order. */
-#ifndef HIFDM_QUADRATIC_KERNEL_H
-#define HIFDM_QUADRATIC_KERNEL_H
+#pragma once
 
 #include "base/lane.h"
 
@@ -24,5 +23,3 @@ typedef struct {
 } hf_quadratic_kernels;
 
 extern const hf_quadratic_kernels HF_LANE_EACH(hf_quadratic_kernels);
-
-#endif

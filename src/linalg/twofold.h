@@ -4,8 +4,7 @@
  * 44, 2017). The root is that of Lefevre, Louvet, Muller, Picot, Rideau (ACM Trans. Math. Softw. 49, 2023). They prove
  * the error bounds stated below. The bounds are relative to the result, with u = 2^-53, and hold without overflow and
  * underflow. Products are split, not fused, so that the bits are the same on every processor. */
-#ifndef HIFDM_TWOFOLD_H
-#define HIFDM_TWOFOLD_H
+#pragma once
 
 /* A kernel that computes with eight of them side by side defines HF_TWOFOLD_NUMBER as a vector, before it includes this
  * file. The operations are the same, and so are the bits. */
@@ -93,5 +92,3 @@ HF_TWOFOLD_INLINE hf_twofold hf_twofold_divide(hf_twofold a, hf_twofold b)
 
 /* Returns the square root of a >= 0, and 0 for other a. The error is below 4 u^2. */
 hf_twofold hf_twofold_root(hf_twofold a);
-
-#endif

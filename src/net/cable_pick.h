@@ -1,7 +1,6 @@
 /* cable_pick - selects the cables that a row of a case file refers to (a named set of the scene, or `inner`,
  * `boundary`, `all`), and checks that cables have an EA. */
-#ifndef HIFDM_CABLE_PICK_H
-#define HIFDM_CABLE_PICK_H
+#pragma once
 
 #include <hifdm/cable_set.h>
 
@@ -18,5 +17,3 @@ int hf_cable_pick_some(const hf_scene *scene, const char *set, const char *where
  * says what needs the EA, such as "cut lengths need"; `then` says what else to do, or is "". */
 hf_status hf_cable_demand_EA(const hf_scene *scene, const char *where, const char *who_needs, const char *then,
                              hf_messages *messages);
-
-#endif

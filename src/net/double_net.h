@@ -3,8 +3,7 @@
  * The front net lies on z = x^2/(4f) or z = (x^2 + y^2)/(4f). Let s be the distance from its middle, measured along x
  * or in the plane of x and y. Its rim is at s = half_m. The rear surface is z_front + (half^2 - s^2) (1/(4f) +
  * 1/(4f_rear)) - distance. Its rim is straight below the rim of the front, and it bulges towards the front. */
-#ifndef HIFDM_DOUBLE_NET_H
-#define HIFDM_DOUBLE_NET_H
+#pragma once
 
 #include <hifdm/generate.h>
 
@@ -36,5 +35,3 @@ const char *hf_double_net_fault(const hf_double_net *d, char *what, size_t size)
 /* Returns true if the ties are elastic and EA_N contains no stiffness for them. EA_N [2] is by hf_group, as
  * in the generators. */
 bool hf_double_net_lacks_EA(const hf_double_net *d, const double EA_N[2]);
-
-#endif

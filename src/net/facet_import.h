@@ -1,8 +1,7 @@
 /* facet_import - reads the facets of an imported net from a table:
  *
  *     id,a,b,c,d     nodes around the facet in either direction; d is empty or missing for a triangle */
-#ifndef HIFDM_FACET_IMPORT_H
-#define HIFDM_FACET_IMPORT_H
+#pragma once
 
 #include <hifdm/scene.h>
 
@@ -15,5 +14,3 @@ hf_status hf_facet_import(const char *path, hf_scene *scene, hf_messages *messag
 /* Returns twice the area of the triangle of three nodes in m2, seen along z. It is positive if
  * they go counter-clockwise. */
 double hf_facet_double_area(const hf_scene *scene, int a, int b, int c);
-
-#endif

@@ -2,8 +2,7 @@
  * with ties if there is one (double_net), sets of cables and ids.
  *
  * A generator adds nodes and cables twice. First they are only counted, then they are kept. */
-#ifndef HIFDM_FRONT_NET_H
-#define HIFDM_FRONT_NET_H
+#pragma once
 
 #include "net/double_net.h"
 #include <hifdm/cable_set.h>
@@ -52,5 +51,3 @@ void hf_front_net_connect(hf_front_net *front, int a, int b, hf_group group);
  * <node>-<node>. EA_N is that of the generators. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_front_net_scene(const hf_front_net *front, const hf_double_net *d, const double EA_N[2],
                              const hf_front_families *families, hf_scene *scene);
-
-#endif

@@ -1,6 +1,5 @@
 /* numbering - orders the free nodes so that factorisations are cheap. */
-#ifndef HIFDM_NUMBERING_H
-#define HIFDM_NUMBERING_H
+#pragma once
 
 #include <hifdm/scene.h>
 
@@ -8,5 +7,3 @@
  * with the least factorisation work among Cuthill-McKee, sorting along x, y and z, and the reverse of each. Returns
  * HF_OK or HF_NO_MEMORY. */
 hf_status hf_numbering_find(const hf_scene *scene, int *order, int *half_bandwidth);
-
-#endif

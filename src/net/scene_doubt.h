@@ -1,6 +1,5 @@
 /* scene_doubt - warnings about a scene that is valid but probably not what the user intended. */
-#ifndef HIFDM_SCENE_DOUBT_H
-#define HIFDM_SCENE_DOUBT_H
+#pragma once
 
 #include <hifdm/scene.h>
 
@@ -8,5 +7,3 @@
  * another unit, and of a net that nothing holds off the plane of its supports. The scene must have passed
  * hf_scene_check. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_scene_doubt(const hf_scene *scene, hf_messages *messages);
-
-#endif

@@ -9,8 +9,7 @@
  * that start with '#' are skipped. The unit of value is N, m, N/m or m, by law. An empty value stands for the
  * pretension of the case (law tension) or the length at the target positions (law length). The law elastic needs a
  * value (the unstressed length l0) and an EA_N. */
-#ifndef HIFDM_SCENE_IMPORT_H
-#define HIFDM_SCENE_IMPORT_H
+#pragma once
 
 #include <hifdm/scene.h>
 
@@ -19,5 +18,3 @@
  * hf_scene_free in every case. */
 hf_status hf_scene_import(const char *nodes_path, const char *cables_path, const double group_EA_N[2], hf_scene *scene,
                           hf_messages *messages);
-
-#endif

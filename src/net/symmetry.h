@@ -4,8 +4,7 @@
  * unchanged. The mirror image of a cable joins the mirrored positions of its ends (to 1e-9 of the size of the net). The
  * roles and loads of the ends must be mirrored, too. The image has the same group, law and target. A net is symmetric
  * if every cable has an image. */
-#ifndef HIFDM_SYMMETRY_H
-#define HIFDM_SYMMETRY_H
+#pragma once
 
 #include <hifdm/model.h>
 
@@ -29,5 +28,3 @@ void hf_symmetry_average(const hf_model *model, double *initial);
 /* Changes every design variable by the step of its leader from the initial design: T'_k = T_k + (T'_leader - T_leader).
  * leader, `initial` (T) and `design` (T') are [n_variable]. */
 void hf_symmetry_follow(int n_variable, const int *leader, const double *initial, double *design);
-
-#endif

@@ -1,6 +1,5 @@
 /* target_surface - the target surface: parabolic cylinder z = x^2/(4f) along y, or paraboloid z = (x^2 + y^2)/(4f). */
-#ifndef HIFDM_TARGET_SURFACE_H
-#define HIFDM_TARGET_SURFACE_H
+#pragma once
 
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
@@ -25,5 +24,3 @@ typedef struct {
 } hf_target_surface_fit;
 
 hf_target_surface_fit hf_target_surface_compare(hf_surface_kind kind, double focal_length_m, const hf_scene *scene);
-
-#endif

@@ -4,8 +4,7 @@
  * A row makes one design variable for each cable of its set with a free end. A row that varies supports makes one or
  * three for each support at the ends of these cables, in the order of the cables. Linked design variables of a row
  * change by the same step. */
-#ifndef HIFDM_VARIABLES_H
-#define HIFDM_VARIABLES_H
+#pragma once
 
 #include <hifdm/model.h>
 
@@ -25,5 +24,3 @@ void hf_variables_read(const hf_model *model, const double *q_N_per_m, const dou
  * which the first designs are spread. */
 void hf_variables_bound(const hf_optimize_settings *settings, const hf_model *model, int i_variable, double base,
                         double *lower, double *upper, double *reach);
-
-#endif

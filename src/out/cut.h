@@ -1,6 +1,5 @@
 /* cut - the cutting length of each cable of a stored shape, for the cut list and for the page of a result. */
-#ifndef HIFDM_CUT_H
-#define HIFDM_CUT_H
+#pragma once
 
 #include <hifdm/store.h>
 
@@ -14,5 +13,3 @@ typedef struct {
 /* Returns the cutting length of cable i_cable, which must have an EA. reference_N is hf_model_reference_N of the
  * case. */
 hf_cut hf_cut_of(const hf_scene *scene, const hf_shape *shape, double reference_N, int i_cable);
-
-#endif

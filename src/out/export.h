@@ -2,8 +2,7 @@
  *
  * The file export_NAME.c contains the exporter NAME: its row and its function. A new exporter needs such a file and its
  * name in HF_EXPORTERS. The option of `hifdm export`, its help and the call of the exporter follow from the row. */
-#ifndef HIFDM_EXPORT_H
-#define HIFDM_EXPORT_H
+#pragma once
 
 #include "base/file_out.h"
 #include <hifdm/store.h>
@@ -115,5 +114,3 @@ void hf_export_ends_of(const hf_scene *scene, int i_cable, FILE *file);
 /* Writes the cell of cable i_cable in the column `set`, with a comma before it. Writes nothing when the scene has no
  * sets. */
 void hf_export_sets_of(const hf_scene *scene, int i_cable, FILE *file);
-
-#endif

@@ -1,7 +1,6 @@
 /* merged - a merged study prepared for display: its axes, its points, the figures of each stage, which of these vary,
  * and the best point. The page of `hifdm report` and the table of `hifdm show` use it. */
-#ifndef HIFDM_MERGED_H
-#define HIFDM_MERGED_H
+#pragma once
 
 #include "case/study.h"
 #include "store/store_series.h"
@@ -82,5 +81,3 @@ double hf_merged_required_yield(const hf_merged *merged);
 
 /* Returns the title of the study or, without a title, the name of the merged file. */
 const char *hf_merged_heading(const hf_merged *merged);
-
-#endif

@@ -1,6 +1,5 @@
 /* print - output for people: lines, the summary of a result, durations and sizes with units. */
-#ifndef HIFDM_PRINT_H
-#define HIFDM_PRINT_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <hifdm/summary.h>
@@ -50,5 +49,3 @@ double hf_print_scale(const char *unit, const char **told);
 
 /* Returns a gain loss for display, dB: 0 when it is rounding. */
 double hf_print_loss_dB(double loss_dB);
-
-#endif

@@ -1,7 +1,6 @@
 /* print_study - prints a merged study for a terminal: its axes, its points as a table with the best one marked, and
  * what they have in common. */
-#ifndef HIFDM_PRINT_STUDY_H
-#define HIFDM_PRINT_STUDY_H
+#pragma once
 
 #include "out/merged.h"
 #include "out/print.h"
@@ -16,5 +15,3 @@ void hf_print_study_json(const hf_merged *merged, FILE *file);
 #define HF_AXIS_NAME_SIZE 64
 /* Formats the name of an objective: "tension edge" for objective_1_tension_edge. Returns words. */
 const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
-
-#endif

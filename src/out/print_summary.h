@@ -1,6 +1,5 @@
 /* print_summary - parts of hf_print_summary that are used elsewhere, too. */
-#ifndef HIFDM_PRINT_SUMMARY_H
-#define HIFDM_PRINT_SUMMARY_H
+#pragma once
 
 #include "out/print.h"
 
@@ -41,5 +40,3 @@ void hf_print_generations(const hf_search_summary *search, FILE *file);
 /* Prints psi of the as-built net, yield and the cables with the largest shares. `verbose` adds all measures and the
  * control variate. */
 void hf_print_tolerance(const hf_tolerance_summary *tolerance, bool verbose, FILE *file);
-
-#endif

@@ -1,6 +1,5 @@
 /* report - writes a result or a merged study as one HTML page that needs no network, server or WebGL. */
-#ifndef HIFDM_REPORT_H
-#define HIFDM_REPORT_H
+#pragma once
 
 #include "base/json.h"
 #include "out/export.h"
@@ -38,5 +37,3 @@ void hf_report_page_write(const char *title, const char *answer, void (*write_da
 /* The page without its data, which the Makefile makes from src/out/report/: up to the end of the style, from there to
  * the data, and the script. */
 extern const char hf_report_page_head[], hf_report_page_body[], hf_report_page_script[];
-
-#endif

@@ -1,7 +1,6 @@
 /* words - reads the entries of `hifdm explain` from src/manual/glossary.md, which is part of the program: the meaning
  * of every status, warning, figure and term, and what to do about it. */
-#ifndef HIFDM_WORDS_H
-#define HIFDM_WORDS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -45,5 +44,3 @@ int hf_words_read(char *text, hf_word *entry, int size, int *fault);
 
 /* The text of glossary.md, which the Makefile embeds. The first call of another function changes it. */
 extern char hf_words_text[];
-
-#endif

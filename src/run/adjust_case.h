@@ -1,7 +1,6 @@
 /* adjust_case - estimates the errors of cutting lengths of a case from measured positions of its as-built net, and
  * finds the turnbuckle adjustments that restore its figure. */
-#ifndef HIFDM_ADJUST_CASE_H
-#define HIFDM_ADJUST_CASE_H
+#pragma once
 
 #include "built/adjust.h"
 #include "built/measured.h"
@@ -83,5 +82,3 @@ double hf_adjust_case_sigmas(const hf_adjust_case *adjust, int cable);
 
 /* Returns the distance of a measured node from the estimated shape, m. */
 double hf_adjust_case_off_m(const hf_adjust_case *adjust, int row);
-
-#endif

@@ -1,7 +1,6 @@
 /* check - what a run of a case would do, without running it: the solvers, the memory and about how long it takes. Only
  * short trials are run, never the whole optimisation. */
-#ifndef HIFDM_CHECK_H
-#define HIFDM_CHECK_H
+#pragma once
 
 #include "case/study.h"
 #include "run/tolerance_stage.h"
@@ -95,5 +94,3 @@ typedef struct {
  * faults of the points. Returns HF_OK; HF_BAD_CASE if no point can be run; HF_NO_MEMORY, HF_IO or HF_INTERRUPTED. */
 hf_status hf_check_study_points(const hf_study *study, hf_problem *scratch, hf_check_points *points,
                                 hf_messages *messages);
-
-#endif

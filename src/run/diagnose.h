@@ -1,6 +1,5 @@
 /* diagnose - what is wrong or doubtful about a problem or a result, in the words of messages. */
-#ifndef HIFDM_DIAGNOSE_H
-#define HIFDM_DIAGNOSE_H
+#pragma once
 
 #include <hifdm/carrier.h>
 #include <hifdm/population.h>
@@ -76,5 +75,3 @@ void hf_places_free(hf_places *places);
  * it. Displacements within the surface have a warning of their own. */
 void hf_result_doubt_uncounted(const hf_problem *problem, const hf_places *form, const hf_workspace *shape,
                                hf_messages *messages);
-
-#endif

@@ -1,6 +1,5 @@
 /* load_case_stage - the load cases of the as-built net that a case describes, once its design is known. */
-#ifndef HIFDM_LOAD_CASE_STAGE_H
-#define HIFDM_LOAD_CASE_STAGE_H
+#pragma once
 
 #include <hifdm/built.h>
 #include <hifdm/problem.h>
@@ -30,5 +29,3 @@ hf_status hf_load_case_stage_rest(const hf_problem *problem, double *move_m);
 hf_status hf_load_case_stage_rest_by_heat(const hf_problem *problem, double *move_m_per_K);
 
 void hf_load_case_stage_free(hf_load_case_stage *cases);
-
-#endif

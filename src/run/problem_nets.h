@@ -1,6 +1,5 @@
 /* problem_nets - the as-built nets over which a problem has objectives. */
-#ifndef HIFDM_PROBLEM_NETS_H
-#define HIFDM_PROBLEM_NETS_H
+#pragma once
 
 #include <hifdm/problem.h>
 
@@ -11,5 +10,3 @@ void hf_problem_nets_free(hf_problem *problem);
 
 /* Returns the nets for hf_objectives_create, or NULL if no objective is over nets. */
 const hf_objectives_nets *hf_problem_nets_of(const hf_problem *problem);
-
-#endif

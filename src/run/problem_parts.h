@@ -2,8 +2,7 @@
  *
  * `run`, `check` and `evaluate` call them and store or print something in between. Because they share these steps, they
  * refuse the same cases with the same words. */
-#ifndef HIFDM_PROBLEM_PARTS_H
-#define HIFDM_PROBLEM_PARTS_H
+#pragma once
 
 #include <hifdm/problem.h>
 #include <hifdm/summary.h>
@@ -61,5 +60,3 @@ hf_status hf_problem_share(hf_problem *problem, hf_messages *messages);
 
 /* Calls hf_problem_base, hf_problem_batch and hf_problem_share. Returns HF_OK or the status of the one that failed. */
 hf_status hf_problem_prepare(hf_problem *problem, int n_thread, hf_messages *messages);
-
-#endif

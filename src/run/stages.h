@@ -10,8 +10,7 @@
  *
  * A stage returns HF_INTERRUPTED if the run was told to stop before its end; run.c then publishes what is stored. Other
  * failures have a message. */
-#ifndef HIFDM_STAGES_H
-#define HIFDM_STAGES_H
+#pragma once
 
 #include "run/diagnose.h"
 #include "run/load_case_stage.h"
@@ -88,5 +87,3 @@ void hf_stage_count_at_bounds(const hf_population *population, const double *des
 /* Makes the shape in the workspace the result, unless a later stage finds another. Returns HF_OK; HF_BAD_CASE for a
  * design whose as-built net cannot be made; HF_NO_MEMORY. */
 hf_status hf_stage_take(hf_run *run, hf_workspace *workspace, hf_messages *messages);
-
-#endif

@@ -1,7 +1,6 @@
 /* sweep - runs the missing points of a study on all cores. Each point is run once, whatever other processes do. It
  * prints nothing. */
-#ifndef HIFDM_SWEEP_H
-#define HIFDM_SWEEP_H
+#pragma once
 
 #include "case/study.h"
 #include <hifdm/status.h>
@@ -40,5 +39,3 @@ typedef struct {
  * folder has points of another base case. Returns HF_IO or HF_NO_MEMORY for a fault of the machine (memory,
  * descriptors, disk): running points end normally, no further point begins, and no point counts as failed for it. */
 hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, hf_messages *messages);
-
-#endif

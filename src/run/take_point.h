@@ -1,6 +1,5 @@
 /* take_point - makes a point of a front the result of a run, instead of a search. */
-#ifndef HIFDM_TAKE_POINT_H
-#define HIFDM_TAKE_POINT_H
+#pragma once
 
 #include <hifdm/population.h>
 #include <hifdm/problem.h>
@@ -21,5 +20,3 @@ hf_status hf_take_point_read(const char *point, hf_problem *problem, hf_taken_po
  * the front or the design violates the bounds, because the point then belongs to another case; HF_NO_MEMORY. */
 hf_status hf_take_point_check(const hf_problem *problem, const hf_taken_point *taken, const hf_population *bounds,
                               const hf_form_result *found, hf_messages *messages);
-
-#endif

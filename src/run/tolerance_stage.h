@@ -1,7 +1,6 @@
 /* tolerance_stage - the last stage of a run whose case has a section `tolerance`: samples of the as-built net at the
  * shape of the result. */
-#ifndef HIFDM_TOLERANCE_STAGE_H
-#define HIFDM_TOLERANCE_STAGE_H
+#pragma once
 
 #include <hifdm/problem.h>
 #include <hifdm/run.h>
@@ -38,5 +37,3 @@ typedef struct {
  * HF_OK, or the status that prevents samples, without a message. */
 hf_status hf_tolerance_stage_try(const hf_problem *problem, const hf_workspace *shape, double most_s,
                                  hf_tolerance_trial *trial);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * An operator changes whole chains of boundary cables, or single genes. Crossover and mutation do not make linked genes
  * follow their leaders. After them, the caller calls hf_population_link. */
-#ifndef HIFDM_BREEDING_H
-#define HIFDM_BREEDING_H
+#pragma once
 
 #include "base/random.h"
 
@@ -48,5 +47,3 @@ void hf_breeding_mutate(const hf_breeding *breeding, const hf_population *popula
  * child that equals its origin needs no evaluation, because it has the result of the origin. Sets rates and parents. */
 void hf_breeding_finish(const hf_breeding *breeding, const hf_population *now, hf_population *next, int i, int origin,
                         double crossover_rate, double mutation_rate, int mother, int father);
-
-#endif

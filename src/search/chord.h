@@ -6,8 +6,7 @@
  * measures it again and identifies the fault. If the residual of a design does not fall fast enough, hf_evaluate solves
  * the design instead. No operation mixes lanes, so a result depends neither on the designs in the other lanes nor on
  * the thread. */
-#ifndef HIFDM_CHORD_H
-#define HIFDM_CHORD_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/lane.h"
@@ -171,5 +170,3 @@ void hf_chord_report(const hf_chord *chord, const hf_chord_lanes *lanes, int lan
  * the objectives, as for hf_evaluate. */
 void hf_chord_run(const hf_chord *chord, hf_chord_lanes *lanes, hf_workspace *workspace, hf_objectives_point *point,
                   hf_lane_next *next, void *context, bool keeps_shape, const double *design, hf_form_result *result);
-
-#endif

@@ -2,8 +2,7 @@
  * of the front, one objective has its minimum. At the points between the ends, one objective is minimised under limits
  * on the others, and the search begins at a neighbour. Each new limit halves one of the longest gaps, so the points are
  * about evenly spaced. */
-#ifndef HIFDM_FRONT_REFINE_H
-#define HIFDM_FRONT_REFINE_H
+#pragma once
 
 #include <hifdm/evaluate.h>
 #include <hifdm/front.h>
@@ -41,5 +40,3 @@ bool hf_front_refine_applies(const hf_evaluator *evaluator);
  * which are then marked. Otherwise returns HF_NO_MEMORY, HF_INTERRUPTED, or the status of the last attempt if no start
  * leads to a feasible design at an end. *failed_end is then the objective of that end, else -1. */
 hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int *failed_end);
-
-#endif

@@ -4,8 +4,7 @@
  * The derivative of an objective is that of the norm of its residuals (objectives.h), without its weight. For pull and
  * displacement, this norm is a smooth maximum, which the merit contains, and not the maximum itself. Linked design
  * variables are varied one by one. */
-#ifndef HIFDM_JACOBIAN_H
-#define HIFDM_JACOBIAN_H
+#pragma once
 
 #include "search/residuals.h"
 
@@ -32,5 +31,3 @@ void hf_jacobian_free(hf_jacobian *jacobian);
  * that is 0 there is NaN. Returns HF_OK, HF_SINGULAR, HF_NOT_FINITE or HF_NO_MEMORY; all derivatives are NaN unless it
  * is HF_OK. */
 hf_status hf_jacobian_find(hf_jacobian *jacobian, hf_workspace *workspace, double *derivative);
-
-#endif

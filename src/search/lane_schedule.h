@@ -1,7 +1,6 @@
 /* lane_schedule - distributes designs to the SIMD lanes of one thread. A lane that has finished takes the next design,
  * until no design is left. The solvers chord and swarm supply the work on a lane. */
-#ifndef HIFDM_LANE_SCHEDULE_H
-#define HIFDM_LANE_SCHEDULE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -20,5 +19,3 @@ typedef struct {
  * there. Free lanes therefore hold a copy of the first design until they get one of their own. Their results are not
  * stored. Designs that `next` has not returned are not read, because other threads may be writing them. */
 void hf_lane_schedule_run(const hf_lane_solver *work, void *solver, hf_lane_next *next, void *context);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * A room is a copy of working memory, given by its number. In one call of hf_parallel_run, no two threads work in the
  * same room at the same time. The calling thread has room 0. */
-#ifndef HIFDM_PARALLEL_H
-#define HIFDM_PARALLEL_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -38,5 +37,3 @@ void hf_parallel_each(int n_thread, int n, void (*work)(void *context, int room,
  * all threads are busy until the last i is done. Work that is given to hf_later_do runs in one further thread, and is
  * done when this function returns. */
 void hf_parallel_for(int n_thread, int n, void (*work)(void *context, int i), void *context);
-
-#endif

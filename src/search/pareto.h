@@ -3,8 +3,7 @@
  *
  * Designs that break their limits come after all feasible designs, by their violation alone (Deb 2000). A design with
  * an objective or a violation that is not a number comes last, like a design without a shape. */
-#ifndef HIFDM_PARETO_H
-#define HIFDM_PARETO_H
+#pragma once
 
 #include "base/arena.h"
 
@@ -53,5 +52,3 @@ void hf_pareto_keep(const hf_pareto *pareto, int n_member, int *member, int n_ke
 /* Makes the front of the feasible individuals of a population. No point of it dominates another, and no two are equal
  * in all objectives. Returns HF_OK or HF_NO_MEMORY; free the front in either case. */
 hf_status hf_pareto_front(const hf_population *population, hf_front *front);
-
-#endif

@@ -7,8 +7,7 @@
  *
  * An objective with corners is the maximum of several sizes, such as forces on supports, or a ratio of tensions. It has
  * no derivative where two sizes are equal. */
-#ifndef HIFDM_REFINE_H
-#define HIFDM_REFINE_H
+#pragma once
 
 #include "search/watch.h"
 #include <hifdm/optimiser.h>
@@ -70,5 +69,3 @@ bool hf_refine_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
                         const hf_watch_front *front, const hf_refine_watcher *watcher, double *design,
                         hf_workspace *workspace, hf_refine_result *result);
-
-#endif

@@ -1,7 +1,6 @@
 /* refine_problem - sets up the problem that Levenberg-Marquardt solves: the variables and their bounds, the shape of
  * the last design and its derivatives. refine.c takes the steps. */
-#ifndef HIFDM_REFINE_PROBLEM_H
-#define HIFDM_REFINE_PROBLEM_H
+#pragma once
 
 #include "base/arena.h"
 #include "linalg/quadratic.h"
@@ -97,5 +96,3 @@ hf_status hf_refine_linearise(hf_refine_problem *problem);
  * the same design, with the same bits. It returns false and changes nothing if the state belongs to another problem. */
 void hf_refine_pack(hf_refine_problem *problem, const hf_refine_result *result);
 bool hf_refine_resume(hf_refine_problem *problem, size_t n_state, const double *state, hf_refine_result *result);
-
-#endif

@@ -1,8 +1,7 @@
 /* residuals - computes the residuals that Levenberg-Marquardt minimises, and their derivatives by the variables of a
  * design (METHOD section 7). They are those of the objectives, or of psi if there are no objectives. Tables of
  * derivatives use them, too. */
-#ifndef HIFDM_RESIDUALS_H
-#define HIFDM_RESIDUALS_H
+#pragma once
 
 #include "search/sensitivity.h"
 
@@ -43,5 +42,3 @@ hf_status hf_residuals_find(hf_residuals *residuals, const hf_workspace *workspa
  * of an as-built net without derivatives. */
 hf_status hf_residuals_rates(const hf_residuals *residuals, const hf_sensitivity *slopes, const hf_workspace *workspace,
                              double *rate, double *gradient);
-
-#endif

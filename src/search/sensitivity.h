@@ -4,8 +4,7 @@
  *
  * In the matrix, a cable of law length is a stiff spring. The derivative of its length is then wrong by a part of
  * 1/HF_NEWTON_STIFFENING. A second solve removes this error, and a third one the rounding errors of the spring. */
-#ifndef HIFDM_SENSITIVITY_H
-#define HIFDM_SENSITIVITY_H
+#pragma once
 
 #include "linalg/packed_band.h"
 #include "solve/schur.h"
@@ -73,5 +72,3 @@ static inline const double *hf_sensitivity_displacement(const hf_sensitivity *se
 /* Computes the derivatives by the step of one class: `move` [3][n_node] of the positions by row, and tension_rate
  * [n_cable]. */
 void hf_sensitivity_spread(const hf_sensitivity *sensitivity, int i_class, double *move, double *tension_rate);
-
-#endif

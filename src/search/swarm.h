@@ -19,8 +19,7 @@
  * matrix is stored as square tiles of HF_SWARM_BLOCK by HF_SWARM_BLOCK entries. The tiles of a block row are
  * contiguous, from the first one with an entry (skyline) to the one on the diagonal. Inside a tile, the columns are
  * contiguous; see hf_swarm_place. Arrays are aligned to 64 bytes. */
-#ifndef HIFDM_SWARM_H
-#define HIFDM_SWARM_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/lane.h"
@@ -160,5 +159,3 @@ void hf_swarm_update(hf_swarm_lanes *lanes);
 void hf_swarm_run(const hf_evaluator *evaluator, const hf_swarm_plan *plan, hf_swarm_lanes *lanes,
                   hf_workspace *workspace, hf_lane_next *next, void *context, const double *design,
                   hf_form_result *result);
-
-#endif

@@ -2,8 +2,7 @@
  * tensions, and limits on ratios of tensions, on deflections of attachments and on objectives. Each limit is linear in
  * the step to first order. `bend` is what the value was beyond the linear model at the last trial. With it, a step that
  * breaks a limit is solved again. */
-#ifndef HIFDM_WATCH_H
-#define HIFDM_WATCH_H
+#pragma once
 
 #include "linalg/quadratic.h"
 #include "search/sensitivity.h"
@@ -101,5 +100,3 @@ bool hf_watch_worst(hf_watch *watch, const double *x, double worst, hf_quadratic
 /* Returns by how much a limit of kind HF_WATCH_OBJECTIVE or above is relaxed per unit of the limit on objective *goal,
  * to which it belongs. */
 double hf_watch_relief(const hf_watch *watch, int kind, int *objective);
-
-#endif

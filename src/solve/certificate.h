@@ -2,8 +2,7 @@
  * position error, and certified bounds of the distance between the
  * shape and the true equilibrium (METHOD section 3).
  * Stability: internal; may change in any version. */
-#ifndef HIFDM_CERTIFICATE_H
-#define HIFDM_CERTIFICATE_H
+#pragma once
 
 #include <hifdm/formfind.h>
 
@@ -13,5 +12,3 @@
  * maximum node displacement in D^-1 times the remaining forces. That position error is NaN if a law iterates (nets with
  * struts) or the net is on a truss: D is then not the derivative of the forces. */
 void hf_certify(const hf_model *model, hf_workspace *workspace, hf_form_result *result);
-
-#endif

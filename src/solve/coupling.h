@@ -14,8 +14,7 @@
  * The answer of a convex net is unique, because it minimises Pi(x, r) + r' F^-1 r / 2, which is convex, too. schur.h
  * has the exact derivative of the coupled net.
  * Stability: internal; may change in any version. */
-#ifndef HIFDM_COUPLING_H
-#define HIFDM_COUPLING_H
+#pragma once
 
 #include <hifdm/formfind.h>
 
@@ -65,5 +64,3 @@ double hf_coupling_measure(const hf_model *model, hf_workspace *workspace, hf_fo
  * passes. */
 void hf_coupling_accept(const hf_model *model, const hf_workspace *workspace, int iterations, double step_m,
                         hf_form_result *result);
-
-#endif

@@ -1,8 +1,7 @@
 /* equilibrium - from first force densities to the shape of minimum energy. It takes a few steps of the paper's
  * iteration and of Newton's method if the start is near the answer, else the primal-dual path (METHOD section 5).
  * Stability: internal; may change in any version. */
-#ifndef HIFDM_EQUILIBRIUM_H
-#define HIFDM_EQUILIBRIUM_H
+#pragma once
 
 #include <hifdm/formfind.h>
 
@@ -26,5 +25,3 @@ hf_status hf_equilibrium_find_by_paper(const hf_model *model, const hf_form_sett
  * culprit become those of the path. Returns result->status. */
 hf_status hf_equilibrium_judge_open(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                                     hf_form_result *result);
-
-#endif

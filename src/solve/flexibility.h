@@ -5,8 +5,7 @@
  * The displacements of the attachments are r = L s, and the truss stores the energy s's/2. The components of s are the
  * unknowns of the truss. Their number is the rank of F, so the truss may be rigid in some directions. Vectors b and r
  * have n = 3 n_attachment components by dof 3*i + c. */
-#ifndef HIFDM_FLEXIBILITY_H
-#define HIFDM_FLEXIBILITY_H
+#pragma once
 
 #include "linalg/twofold.h"
 #include "solve/newton_matrix.h"
@@ -57,5 +56,3 @@ bool hf_flexibility_factor_net(const hf_model *model, hf_workspace *workspace, h
 
 /* Does the same with share 1 and the S that hf_schur_factor has left in the workspace. */
 bool hf_flexibility_factor_schur(const hf_model *model, const hf_workspace *workspace, hf_flexibility *flexibility);
-
-#endif

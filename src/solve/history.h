@@ -1,7 +1,6 @@
 /* history - records the figures of each iteration and step of a form-finding (hf_history).
  * Stability: internal; may change in any version. */
-#ifndef HIFDM_HISTORY_H
-#define HIFDM_HISTORY_H
+#pragma once
 
 #include <hifdm/workspace.h>
 
@@ -17,5 +16,3 @@ void hf_history_add_step(const hf_model *model, hf_workspace *workspace, double 
 
 /* Adds a row to the history of the coupling. history may be NULL. */
 void hf_history_add_coupling(hf_history *history, double step_m, double psi_m, double max_displacement_m);
-
-#endif

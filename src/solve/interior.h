@@ -1,8 +1,7 @@
 /* interior - finds the equilibrium of a tension net by a primal-dual interior path, for all laws and from any shape
  * (METHOD section 5).
  * Stability: internal; may change in any version. */
-#ifndef HIFDM_INTERIOR_H
-#define HIFDM_INTERIOR_H
+#pragma once
 
 #include <hifdm/formfind.h>
 #include <stdbool.h>
@@ -26,5 +25,3 @@
  *   HF_NOT_CONVERGED   none of these; the workspace holds the last shape of the path, or one nearer to the answer. */
 hf_status hf_interior_run(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                           bool is_held, int max_steps, int *n_step, int *culprit);
-
-#endif

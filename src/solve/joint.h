@@ -5,8 +5,7 @@
  * Vectors [3 n_moving] hold the free nodes by dof 3*row + c, followed by the attachments in the same way. The forces on
  * attachments are those of cables and loads. The truss answers them by the displacements F f, so the inverse of F is
  * not needed. With n_moving = n_free all functions act on the net alone, as in newton_matrix.h. */
-#ifndef HIFDM_JOINT_H
-#define HIFDM_JOINT_H
+#pragma once
 
 #include "solve/newton_matrix.h"
 
@@ -44,5 +43,3 @@ double hf_joint_loose_spring_N_per_m(const hf_model *model);
 
 /* Sets displacement_m to the displacements of the attachments in position_m. */
 void hf_joint_set_displacement(const hf_model *model, hf_workspace *workspace);
-
-#endif

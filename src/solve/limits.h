@@ -1,8 +1,7 @@
 /* limits - the limits that a design must obey: the cap on the boundary tension ratio and the rows of optimize.limits. A
  * design whose shape breaks one is infeasible. Its violation is a sum over all limits, and infeasible designs are
  * ranked by it. */
-#ifndef HIFDM_LIMITS_H
-#define HIFDM_LIMITS_H
+#pragma once
 
 #include <hifdm/evaluate.h>
 
@@ -46,5 +45,3 @@ const char *hf_limits_name(const hf_scene *scene, const hf_model *model, const h
  * optimize.limits.0". Writes "" if it breaks none. Returns text. */
 const char *hf_limits_name_broken(const hf_evaluator *evaluator, const hf_scene *scene, const hf_workspace *workspace,
                                   char *text, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 /* loose - finds free nodes without load that no taut cable holds, and gives them positions (METHOD section 4).
  * Stability: internal; may change in any version. */
-#ifndef HIFDM_LOOSE_H
-#define HIFDM_LOOSE_H
+#pragma once
 
 #include <hifdm/formfind.h>
 
@@ -16,5 +15,3 @@ void hf_loose_settle(const hf_model *model, const hf_form_settings *settings, hf
 /* Refuses a design with loose nodes: the status becomes HF_SINGULAR, and the first of them is the culprit. */
 void hf_loose_refuse(const hf_model *model, const hf_form_settings *settings, hf_workspace *workspace,
                      hf_form_result *result);
-
-#endif

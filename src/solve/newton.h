@@ -4,8 +4,7 @@
  *
  * The unknowns are the coordinates of the free nodes, and the tensions of the cables whose law has a multiplier
  * (length, elastic). newton_matrix.h has the matrix. */
-#ifndef HIFDM_NEWTON_H
-#define HIFDM_NEWTON_H
+#pragma once
 
 #include <hifdm/formfind.h>
 
@@ -35,5 +34,3 @@ double hf_newton_certify(const hf_model *model, hf_workspace *workspace, hf_form
  * slack, and its force density is 0. A node held by such cables alone has no determined position. The tests of solve
  * pass from 1e-14 to 1e-8; a larger value makes more nodes of nets of stiff cables count as loose. */
 #define HF_NEWTON_NOTHING 1e-12
-
-#endif

@@ -7,8 +7,7 @@
  * positive definite. Eq. 8 is the same step with a stiffening of 1. A taut elastic cable has k = EA/l0 and L* = l0 (1 +
  * T/EA), so no force contains EA times a length error. A slack one has k = 0. The matrix is stored as a lower band,
  * column-major, with half-bandwidth 3b + 2, in the workspace's newton_band. */
-#ifndef HIFDM_NEWTON_MATRIX_H
-#define HIFDM_NEWTON_MATRIX_H
+#pragma once
 
 #include "linalg/packed_band.h"
 #include <hifdm/workspace.h>
@@ -198,5 +197,3 @@ static inline double hf_newton_matrix_rounding(int half_bandwidth, double n_cabl
  * NULL, or the moving rows of the factor, for one right-hand side; the step of the others is 0. */
 void hf_newton_matrix_solve(const hf_model *model, const hf_workspace *workspace, const hf_newton_rows *rows, int n_rhs,
                             double *rhs);
-
-#endif

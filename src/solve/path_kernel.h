@@ -6,8 +6,7 @@
  * 8, 1998), the second-order term is that of Mehrotra (SIAM J. Optim. 2, 1992), as in Andersen, Roos, Terlaky (Math.
  * Program. B 95, 2003). The kernels are compiled once for each instruction set. All instruction sets give the same
  * bits, because no operation mixes cables and none is fused. */
-#ifndef HIFDM_PATH_KERNEL_H
-#define HIFDM_PATH_KERNEL_H
+#pragma once
 
 #include "base/lane.h"
 
@@ -54,5 +53,3 @@ typedef struct {
 } hf_path_kernels;
 
 extern const hf_path_kernels HF_LANE_EACH(hf_path_kernels);
-
-#endif

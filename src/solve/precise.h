@@ -1,8 +1,7 @@
 /* precise - the equilibrium near a found shape at twice the precision, and the cables there. certificate.c certifies
  * its bounds at this precise shape (METHOD section 3).
  * Stability: internal; may change in any version. */
-#ifndef HIFDM_PRECISE_H
-#define HIFDM_PRECISE_H
+#pragma once
 
 #include "solve/flexibility.h"
 #include <hifdm/formfind.h>
@@ -76,5 +75,3 @@ static inline bool hf_precise_is_fixed(const hf_model *model, int i_cable)
     int n_moving = model->n_free + model->n_attachment;
     return model->end_row[2 * i_cable] >= n_moving && model->end_row[2 * i_cable + 1] >= n_moving;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* precise_kernel - measures HF_LANES cables side by side at twice the precision. It is compiled once for each
  * instruction set, and precise.c chooses one at run time. All instruction sets give the same bits. */
-#ifndef HIFDM_PRECISE_KERNEL_H
-#define HIFDM_PRECISE_KERNEL_H
+#pragma once
 
 #include "base/lane.h"
 
@@ -25,5 +24,3 @@ typedef struct {
  * length, else with T. */
 typedef void hf_precise_measure(hf_precise_lanes *lanes, bool by_law);
 hf_precise_measure HF_LANE_EACH(hf_precise_measure);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * A cable whose law gives a tension requires that one. The others take what balance needs, evenly within their
  * family. */
-#ifndef HIFDM_PRESTRESS_H
-#define HIFDM_PRESTRESS_H
+#pragma once
 
 #include <hifdm/scene.h>
 #include <hifdm/settings.h>
@@ -25,5 +24,3 @@ hf_status hf_prestress_hold(hf_scene *scene, const hf_form_settings *form, const
 /* Returns the family of a cable: the smallest set that contains it (the first of several), 0..n_set-1. A cable in no
  * set has the family n_set + its group. */
 int hf_prestress_family(const hf_scene *scene, int i_cable);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * r are the displacements of the attachments and F is their flexibility. H is the Newton matrix in parts of free nodes
  * (f) and attachments (a). The stiffness of the net at the attachments is S = H_aa - H_af H_ff^-1 H_fa. */
-#ifndef HIFDM_SCHUR_H
-#define HIFDM_SCHUR_H
+#pragma once
 
 #include "solve/newton_matrix.h"
 
@@ -67,5 +66,3 @@ void hf_schur_push(const hf_model *model, const hf_workspace *workspace, hf_newt
                    const double *displacement_m, double *force);
 void hf_schur_pull(const hf_model *model, const hf_workspace *workspace, hf_newton_block *block_of,
                    const double *step_m, double *pull);
-
-#endif

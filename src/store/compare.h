@@ -3,8 +3,7 @@
  * Attributes are not compared. They hold times, the machine and the provenance, which differ between two runs of the
  * same case, and a summary of the data sets. If both files are results, the group /VTKHDF is not compared either,
  * because it follows from the other groups. */
-#ifndef HIFDM_COMPARE_H
-#define HIFDM_COMPARE_H
+#pragma once
 
 #include <hifdm/status.h>
 
@@ -25,5 +24,3 @@ typedef void hf_compare_tell(void *context, const char *path, const char *how);
  * HF_DIFFERENT if not. Errors: HF_IO if a file cannot be read, HF_NO_MEMORY. */
 hf_status hf_compare_files(const char *a, const char *b, hf_comparison *comparison, hf_compare_tell *tell,
                            void *context, hf_messages *messages);
-
-#endif

@@ -15,8 +15,7 @@
  * By optimize.store a file may have fewer rows of individuals: those of the best individual of each generation, or
  * those of every n-th generation. Figures of a generation always have a row. The last generation is then stored as a
  * whole in /ga/last. */
-#ifndef HIFDM_GENERATIONS_H
-#define HIFDM_GENERATIONS_H
+#pragma once
 
 #include "store/layout.h"
 
@@ -100,5 +99,3 @@ void hf_generations_sum_up(hf_hdf5 *io, const hf_generations *g, hf_summary *sum
 /* Puts a newly created population into the state before hf_optimiser_tell of the last generation of the file. A file of
  * other dimensions is damaged (HF_IO in io->status). */
 void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population *population);
-
-#endif

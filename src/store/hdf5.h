@@ -4,8 +4,7 @@
  * Every call takes an hf_hdf5 and records the first failure there. Once the status is not HF_OK, calls do nothing. A
  * sequence of calls therefore needs only one check of io->status, at its end. After a failure ids are negative, and
  * closing a negative id has no effect. */
-#ifndef HIFDM_STORE_HDF5_H
-#define HIFDM_STORE_HDF5_H
+#pragma once
 
 #include "base/child.h"
 #include "base/file_out.h"
@@ -260,5 +259,3 @@ bool hf_hdf5_has_attribute(hf_hdf5 *io, hid_t place, const char *name, const cha
 bool hf_hdf5_has_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute);
 
 #define HF_HDF5_COUNT(table) ((int)(sizeof(table) / sizeof((table)[0])))
-
-#endif

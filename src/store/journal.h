@@ -12,8 +12,7 @@
  * The journal is also the lock of the result. The lock is flock(2) on the journal, held from before the process looks
  * at the result until the result is finished. The name of the journal moves to another file only by rename(2). If a
  * process gets the lock of a file that no longer has the name, it opens the name again. */
-#ifndef HIFDM_JOURNAL_H
-#define HIFDM_JOURNAL_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -82,5 +81,3 @@ void hf_journal_forget(hf_journal *journal);
 
 /* Releases the lock and closes the file; with `remove` it deletes the file, too. */
 void hf_journal_close(hf_journal *journal, bool remove);
-
-#endif

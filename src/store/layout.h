@@ -8,8 +8,7 @@
  *
  * A new data set per node or cable is a row of scene_column or shape_column (layout.c). A new attribute is a row of a
  * list of members. A new enumeration is a new kind. */
-#ifndef HIFDM_STORE_LAYOUT_H
-#define HIFDM_STORE_LAYOUT_H
+#pragma once
 
 #include "store/hdf5.h"
 #include "store/renamed.h"
@@ -231,5 +230,3 @@ hf_hdf5_array hf_layout_of_variables(const char *name, bool has_rows, int rank, 
 
 /* Writes this data set for n design variables. */
 void hf_layout_write_variables(hf_hdf5 *io, hid_t group, const char *name, bool has_rows, int n, const double *values);
-
-#endif

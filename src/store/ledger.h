@@ -8,8 +8,7 @@
  *                         offset of the byte is the id of the point as a number. The lock ends with the process.
  *   ID-FINGERPRINT.h5     the result file of a point, if it has one. FINGERPRINT are the first 8 digits of that of the
  *                         base case, so that runs of different base cases never share a file. */
-#ifndef HIFDM_LEDGER_H
-#define HIFDM_LEDGER_H
+#pragma once
 
 #include "base/file_io.h"
 #include "store/layout.h"
@@ -139,5 +138,3 @@ void hf_points_free(hf_points *points);
 
 /* Returns how many of the missing points have a result file that a sweep has begun. */
 int hf_ledger_n_begun(const char *folder, const hf_study *study, const hf_points *points);
-
-#endif

@@ -17,8 +17,7 @@
  * The names of version 0.2 are soft links to these data sets (renamed.h).
  *
  * The data sets depend only on the study and the base case, not on shards, order, threads or interruptions. */
-#ifndef HIFDM_MERGE_H
-#define HIFDM_MERGE_H
+#pragma once
 
 #include "store/ledger.h"
 
@@ -27,5 +26,3 @@
  * never replaced. Returns HF_OK, HF_EXISTS if the file may not be replaced, HF_IO or HF_NO_MEMORY. */
 hf_status hf_merge(const hf_study *study, const char *folder, const hf_points *points, const char *output, bool force,
                    hf_messages *messages);
-
-#endif

@@ -10,8 +10,7 @@
  *     /ga, /ga/best, /ga/last, /polish  groups with soft links and copies alone
  *
  * No reader of hifdm follows these links. */
-#ifndef HIFDM_STORE_RENAMED_H
-#define HIFDM_STORE_RENAMED_H
+#pragma once
 
 #include "store/hdf5.h"
 
@@ -33,5 +32,3 @@ const char *hf_renamed_figure(const char *then, char *now, size_t size);
 /* Writes today's name of an object in a group of a merge of 0.2 into now[size], and returns it. group: path of today,
  * such as "/points/search". */
 const char *hf_renamed_point(const char *group, const char *then, char *now, size_t size);
-
-#endif

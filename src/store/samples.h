@@ -4,8 +4,7 @@
  *
  * The samples come in chunks, and each chunk is a record of the journal. Each task of a job array has its own journal.
  * The process that writes the result reads the journals of all tasks. */
-#ifndef HIFDM_SAMPLES_H
-#define HIFDM_SAMPLES_H
+#pragma once
 
 #include "built/statistics.h"
 #include "store/journal.h"
@@ -63,5 +62,3 @@ void hf_samples_close(hf_samples *samples);
 
 /* Removes the journals of a finished result, for any number of tasks. */
 void hf_samples_remove(const char *result);
-
-#endif

@@ -22,8 +22,7 @@
  *
  * Against power cuts, tmp is synced before its name changes, the folder is synced before the journal is rotated, and
  * the journal is synced every HF_JOURNAL_SYNC_S. */
-#ifndef HIFDM_STORE_FILE_H
-#define HIFDM_STORE_FILE_H
+#pragma once
 
 #include "store/hdf5.h"
 #include "store/journal.h"
@@ -86,5 +85,3 @@ void hf_store_file_publish(hf_store_file *file, bool durable, bool is_finished);
  * generations that the visible file does not hold. It also stays if nothing was published and it was there before, or
  * if the temporary file could not be removed. */
 void hf_store_file_end(hf_store_file *file, hf_messages *messages);
-
-#endif

@@ -1,6 +1,5 @@
 /* store_internal - the struct of a store, shared by the files store*.c, and the calls that make and free a store. */
-#ifndef HIFDM_STORE_INTERNAL_H
-#define HIFDM_STORE_INTERNAL_H
+#pragma once
 
 #include "store/generations.h"
 #include "store/store_file.h"
@@ -62,5 +61,3 @@ void hf_store_put_refine(hf_store *s, bool finished);
  * Slurm job, by which its logs can be found. */
 void hf_store_put_time(hf_store *s, const char *attribute);
 void hf_store_put_job(hf_store *s);
-
-#endif

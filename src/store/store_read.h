@@ -1,6 +1,5 @@
 /* store_read - opens a result file, and reads what the program needs in addition to <hifdm/store.h>. */
-#ifndef HIFDM_STORE_READ_H
-#define HIFDM_STORE_READ_H
+#pragma once
 
 #include "store/layout.h"
 #include <hifdm/store.h>
@@ -27,5 +26,3 @@ hf_status hf_store_fail_damaged(const char *path, hf_messages *messages);
  * returns the status. */
 hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages);
 hf_status hf_store_close_result(hf_hdf5 *io);
-
-#endif

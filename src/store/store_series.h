@@ -1,7 +1,6 @@
 /* store_series - reads any data set of a result file or of a merged study by its name, as numbers or as texts. It also
  * lists the names and the external links of a group. Reports use it. */
-#ifndef HIFDM_STORE_SERIES_H
-#define HIFDM_STORE_SERIES_H
+#pragma once
 
 #include "store/store_read.h"
 
@@ -42,5 +41,3 @@ hf_status hf_store_read_names(const char *path, const char *group, hf_texts *nam
 /* Reads the files that the external links of a group lead to, one for each of `names`; "" if there is no such link. */
 hf_status hf_store_read_links(const char *path, const char *group, const hf_texts *names, hf_texts *files,
                               hf_messages *messages);
-
-#endif

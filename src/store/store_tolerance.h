@@ -1,8 +1,7 @@
 /* store_tolerance - writes the as-built samples into a result file. The group /tolerance gets a data set with one value
  * per sample for each measure, the shares of the cables and the deviations of the nodes. layout_tolerance writes the
  * statistics of the samples into the same group. */
-#ifndef HIFDM_STORE_TOLERANCE_H
-#define HIFDM_STORE_TOLERANCE_H
+#pragma once
 
 #include "built/statistics.h"
 #include <hifdm/store.h>
@@ -11,5 +10,3 @@
  * store is NULL. */
 hf_status hf_store_tolerance(hf_store *store, const hf_montecarlo *montecarlo, const hf_statistics_rows *rows,
                              hf_messages *messages);
-
-#endif

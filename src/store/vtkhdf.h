@@ -11,8 +11,7 @@
  * not displacements. Links to positions cost no bytes, and the values are exactly those of our groups. The calculator
  * of ParaView takes them as coordinates, also with magnified displacements. Only the ends and types of the cells, and
  * role and group as numbers, are copies, because VTK reads neither pairs nor enumerations. */
-#ifndef HIFDM_STORE_VTKHDF_H
-#define HIFDM_STORE_VTKHDF_H
+#pragma once
 
 #include "store/hdf5.h"
 #include <hifdm/summary.h>
@@ -31,5 +30,3 @@ void hf_vtkhdf_put_cells(hf_hdf5 *io, const hf_vtkhdf_cells *cells);
 
 /* Makes the group of a result whose other groups exist already. Does nothing if the result has no shape. */
 void hf_vtkhdf_put_result(hf_hdf5 *io, const hf_summary *summary);
-
-#endif

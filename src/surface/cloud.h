@@ -1,8 +1,7 @@
 /* cloud - points of a shape at which an objective measures the distance from the target surface: inner nodes, or
  * quadrature points in flat facets. The derivatives are exact, also if the surface is the best fit to these points
  * (METHOD section 7). */
-#ifndef HIFDM_CLOUD_H
-#define HIFDM_CLOUD_H
+#pragma once
 
 #include <hifdm/settings.h>
 
@@ -66,5 +65,3 @@ void hf_cloud_push(hf_cloud *cloud, const double *move, double *rate);
  * curvature and the slope t there (M16). m is 1 for the half path and 1/2 along the normal. d [4]: derivatives
  * by p and by the curvature. */
 double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4]);
-
-#endif

@@ -1,7 +1,6 @@
 /* facet_mesh - the facets of a shape, with the pillow shape of a tensioned mesh between cables that deflect under its
  * pull, and the errors of the surface between the nodes (METHOD section 9). */
-#ifndef HIFDM_FACET_MESH_H
-#define HIFDM_FACET_MESH_H
+#pragma once
 
 #include "base/arena.h"
 #include "surface/surface_near.h"
@@ -119,5 +118,3 @@ typedef struct {
 /* Computes the errors of each facet. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_facet_map(const hf_surface_settings *settings, const hf_facets *facets, const hf_facet_shape *shape,
                        const hf_facet_errors *to);
-
-#endif

@@ -1,7 +1,6 @@
 /* gain - how much of the far field in the direction of the beam is in phase, for a shape with facets, with exact
  * derivatives (METHOD section 13). */
-#ifndef HIFDM_GAIN_H
-#define HIFDM_GAIN_H
+#pragma once
 
 #include <hifdm/pattern.h>
 
@@ -65,5 +64,3 @@ void hf_gain_linearise(hf_gain *gain, const double *position_m);
 
 /* Computes rate [2 n], the rates of the residuals for a motion `move` [3][n_node] of the nodes. */
 void hf_gain_push(hf_gain *gain, const double *move, double *rate);
-
-#endif

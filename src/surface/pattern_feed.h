@@ -1,6 +1,5 @@
 /* pattern_feed - the field of a feed at the points of a surface (METHOD section 13). */
-#ifndef HIFDM_PATTERN_FEED_H
-#define HIFDM_PATTERN_FEED_H
+#pragma once
 
 #include <hifdm/pattern.h>
 
@@ -11,5 +10,3 @@ double hf_feed_light(const hf_feed *feed, const double p[3], double toward[3], d
 
 /* Computes the rate of this field for a motion `move` of p. The rate of the path is toward . move. */
 void hf_feed_light_rate(const hf_feed *feed, const double p[3], const double move[3], double field_rate[3]);
-
-#endif

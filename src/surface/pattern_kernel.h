@@ -1,7 +1,6 @@
 /* pattern_kernel - the sums of physical optics, several directions per vector, compiled once for each instruction set.
  * pattern.c chooses one at run time. All give the same bits (base/lane.h). */
-#ifndef HIFDM_PATTERN_KERNEL_H
-#define HIFDM_PATTERN_KERNEL_H
+#pragma once
 
 #include "base/lane.h"
 
@@ -24,5 +23,3 @@ typedef struct {
 } hf_pattern_kernels;
 
 extern const hf_pattern_kernels HF_LANE_EACH(hf_pattern_kernels);
-
-#endif

@@ -1,6 +1,5 @@
 /* surface_fit - the best fit of a surface with its parameters, for code that needs derivatives (METHOD section 9). */
-#ifndef HIFDM_SURFACE_FIT_H
-#define HIFDM_SURFACE_FIT_H
+#pragma once
 
 #include <hifdm/surface.h>
 
@@ -83,5 +82,3 @@ hf_fit_point hf_fit_point_take(const hf_fit_frame *frame, int i);
 /* Returns half the weighted sum of squares of the half-path errors, m2. Writes its derivatives G [n] and H [n][n] by
  * the n = found->n parameters. */
 double hf_fit_hessian(const hf_fit_frame *frame, double *G, double *H);
-
-#endif

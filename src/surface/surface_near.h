@@ -1,8 +1,7 @@
 /* surface_near - the best fit to points that are near those of another fit, such as an as-built net near its design. It
  * takes Gauss-Newton steps from that fit and allocates no memory for them (METHOD section 9). The reference is
  * hf_surface_fit_points; it also finds the fits that this method does not find. */
-#ifndef HIFDM_SURFACE_NEAR_H
-#define HIFDM_SURFACE_NEAR_H
+#pragma once
 
 #include "surface/surface_fit.h"
 #include <hifdm/facets.h>
@@ -45,5 +44,3 @@ hf_status hf_surface_design_make(const hf_surface_settings *settings, const hf_f
 hf_status hf_surface_measure_near(const hf_surface_design *design, const hf_surface_settings *settings,
                                   const hf_facets *facets, const hf_model *model, const double *position_m,
                                   const double *tension_N, hf_surface_paths *paths);
-
-#endif

@@ -9,13 +9,10 @@
  *
  * A rigid member needs G_Pa, Iy_m4, Iz_m4 and J_m4. An empty shear area is infinite: no shear deformation. An empty
  * mass, roll, density or expansion is 0. */
-#ifndef HIFDM_TRUSS_IMPORT_H
-#define HIFDM_TRUSS_IMPORT_H
+#pragma once
 
 #include <hifdm/truss.h>
 
 /* Reads a truss. Returns HF_OK. Returns HF_BAD_CASE after reporting every fault with file, line and id. Returns HF_IO
  * or HF_NO_MEMORY if reading fails. Call hf_truss_free in every case. */
 hf_status hf_truss_import(const char *nodes_path, const char *members_path, hf_truss *truss, hf_messages *messages);
-
-#endif

@@ -1,6 +1,5 @@
 /* tube - the section and material of a member of a generated truss. */
-#ifndef HIFDM_TUBE_H
-#define HIFDM_TUBE_H
+#pragma once
 
 #include <hifdm/truss.h>
 
@@ -8,5 +7,3 @@
  * Writes its id, made of the ids of its nodes, to text [size]. Returns the end of the id. */
 char *hf_tube_join(const hf_truss_settings *settings, double diameter_m, double wall_m, hf_truss *truss, int e, int a,
                    int b, hf_unit unit, char *text, size_t size);
-
-#endif

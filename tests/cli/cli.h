@@ -1,7 +1,6 @@
 /* cli - shared by the tests of the program: makes cases, runs the program, and checks its exit code, output and
  * files. */
-#ifndef HIFDM_TESTS_CLI_H
-#define HIFDM_TESTS_CLI_H
+#pragma once
 
 #include "support.h"
 
@@ -177,5 +176,3 @@ static inline double number_after(const char *what)
     ck_assert_msg(at, "%s is not in %s", what, said.out);
     return strtod(at + strlen(what), NULL);
 }
-
-#endif

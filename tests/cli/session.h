@@ -1,7 +1,6 @@
 /* session - starts programs that a test kills, stops or disturbs while they run, and reads the files that they
  * leave. */
-#ifndef HIFDM_TESTS_SESSION_H
-#define HIFDM_TESTS_SESSION_H
+#pragma once
 
 #include "cli.h"
 
@@ -283,5 +282,3 @@ static inline int generations_in_file(const char *path)
     const char *key = "\"generations\": ", *at = strstr(said.out, key);
     return at ? atoi(at + strlen(key)) : 0;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* preload - the calls of the system that a library in front of the program's own (LD_PRELOAD) can make fail. The file
  * that includes this says which by strikes(). */
-#ifndef HIFDM_TESTS_PRELOAD_H
-#define HIFDM_TESTS_PRELOAD_H
+#pragma once
 
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -74,5 +73,3 @@ static int open_by(const char *real_name, const char *name, int flags, mode_t mo
     }
 OPEN(open)
 OPEN(open64)
-
-#endif

@@ -1,8 +1,7 @@
 /* fuzz - what the harnesses share: files in memory, limits on what an input may cost, and what must hold for every
  * answer. A harness is fuzz_NAME.c with LLVMFuzzerTestOneInput (libFuzzer); its inputs are in corpus/NAME. tests/fuzz/
  * run.sh runs them. */
-#ifndef HIFDM_TESTS_FUZZ_H
-#define HIFDM_TESTS_FUZZ_H
+#pragma once
 
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -37,5 +36,3 @@ void fuzz_judge(hf_status status, hf_messages *messages);
 /* Ends the process as a crash would, so that libFuzzer keeps the input. */
 #define FUZZ_REQUIRE(condition) ((condition) ? (void)0 : fuzz_fail(#condition, __FILE__, __LINE__))
 void fuzz_fail(const char *condition, const char *file, int line) __attribute__((noreturn));
-
-#endif

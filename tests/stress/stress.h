@@ -2,8 +2,7 @@
  * verified or in a refusal that names its culprit. Failures are a wrong number under a good status, a NaN under a good
  * status (but that of the position error where nodes drift), and a refusal without a culprit.
  * Contents: verdict - tally - known solutions. */
-#ifndef HIFDM_TESTS_STRESS_H
-#define HIFDM_TESTS_STRESS_H
+#pragma once
 
 #include "laws.h"
 #include "verified.h"
@@ -190,5 +189,3 @@ static inline void known_scene(struct rng *rng, const struct known *k, hf_scene 
             node[i].position_m[c] += k->shake * shortest * rng_uniform(rng, -1, 1);
     hand_scene(scene, n_node, node, n_cable, cable);
 }
-
-#endif

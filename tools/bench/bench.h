@@ -1,8 +1,7 @@
 /* bench - what the parts of the benchmark driver share. The driver only measures: each sample is one line on standard
  * output, `section scene method parameter quantity value` with tabs between; run.py calls it in rounds, takes medians
  * and writes the tables and figures. */
-#ifndef HIFDM_BENCH_H
-#define HIFDM_BENCH_H
+#pragma once
 
 #include <hifdm/batch.h>
 #include <hifdm/config.h>
@@ -89,5 +88,3 @@ void bench_population(const char *scene, const char *folder);
 void bench_lanes(const char *scene, const char *folder);
 void bench_whole(const char *path, const char *folder);
 void bench_stages(const char *name, const char *folder, const char *path, const char *const *overrides, int n_override);
-
-#endif

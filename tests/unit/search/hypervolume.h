@@ -1,6 +1,5 @@
 /* hypervolume - of points with two or three objectives below a reference, for tests: by slices, O(n^3). */
-#ifndef TESTS_HYPERVOLUME_H
-#define TESTS_HYPERVOLUME_H
+#pragma once
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,5 +35,3 @@ static inline double hypervolume(int n, double (*point)[3], const double referen
     }
     return volume;
 }
-
-#endif
