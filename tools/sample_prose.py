@@ -25,9 +25,9 @@ import strings  # noqa: E402
 def sentences(paragraph):
     """Yields the sentences of a paragraph: those with a verb's worth of words that begin and end as sentences do."""
     paragraph = re.sub(r"\s+", " ", paragraph).strip()
-    for text in re.split(r"(?<=[.!?])\s+(?=[A-Z\"`'(])", paragraph):
+    for text in re.split(r"(?<=[.!?])\s+(?=[A-Z\"`'(]|hifdm )", paragraph):
         words = text.split()
-        if 6 <= len(words) <= 60 and re.match(r"[A-Z]", text) and re.search(r"[.!?]$", text):
+        if 6 <= len(words) <= 60 and re.match(r"[A-Z]|hifdm ", text) and re.search(r"[.!?]$", text):
             yield text
 
 
