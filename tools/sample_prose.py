@@ -57,10 +57,14 @@ def of_messages(path):
     begin = {"hf_error": "Error: ", "hf_warning": "Warning: "}
     for call in re.finditer(r'(hf_error\b|hf_warning\b|\.help =|\.about =)[^"]*"((?:[^"\\]|\\.)*)"', code):
         text = begin.get(call.group(1), "") + re.sub(r"^%s:(%d:(%d:)?)? ", "FILE: ", call.group(2))
-        text = re.sub(r"%[-+ #0-9.*]*(?:ll|l|z)?[a-zA-Z]", "X", text).replace('\\"', '"').replace("\\n", " ")
-        for part in re.split(r"(?<=[.!?])\s+(?=[A-Z])", text):
+        text = text.replace("%%", "per cent").replace('\\"', '"').replace("\\n", " ")
+        text = re.sub(r"%[-+ #0-9.*]*(?:ll|l|z)?[a-zA-Z]", "X", text)
+        if text.endswith(": "):
+            continue  # the rest is inserted
+        for part in re.split(r"(?<=[.!?])\s+(?=[A-Z]|hifdm )", text):
             part = part.strip()
-            yield from sentences(part[:1].upper() + part[1:] + ("" if part.endswith((".", "!", "?")) else "."))
+            yield from sentences((part if part.startswith("hifdm ") else part[:1].upper() + part[1:]) +
+                                 ("" if part.endswith((".", "!", "?")) else "."))
 
 
 def of_keys(path):

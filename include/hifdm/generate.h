@@ -53,8 +53,8 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
  * hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
-      "Distance of the rim of a rear net below the rim of the front net. A tie then joins each free node of the "      \
-      "front net to the rear net. 0: no rear net")                                                                     \
+      "Distance of the rim of a rear net below the rim of the front net. Ties join the free nodes of the two nets. "   \
+      "0: no rear net")                                                                                                \
     X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
       "Focal length of the rear net, which is curved towards the front net. 0: the focal length of the front net")     \
     X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"),                                   \
@@ -108,15 +108,15 @@ typedef struct {
     X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                           \
       "Number of net cells per module, along the directrix and the generatrix")                                        \
     X(section, pitches_x_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "Projected widths of the modules along x, from the left; their sum is aperture_m. Within each module the "       \
-      "cells are equal, as spacing says. Without this key, all modules are equal")                                     \
+      "Projected widths of the modules along x, from the left. Their sum must be aperture_m. Within each module "      \
+      "the cells are equal, as spacing says. Without this key, all modules are equal")                                 \
     X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "Lengths of the modules along y; their sum is length_m. Without this key, all modules are equal")                \
+      "Lengths of the modules along y. Their sum must be length_m. Without this key, all modules are equal")           \
     X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", HF_WORDS("quad", "triangle", "diagonal", "alternating"),      \
-      "quad: cables along x and y; triangle: quad and one diagonal per cell, all in the same direction; "              \
-      "alternating: quad and one diagonal per cell, in alternating directions; diagonal: four half diagonals per "     \
-      "cell that meet in a node at its middle, and the boundary cables along x and y. All patterns except quad "       \
-      "omit cables between two supports")                                                                              \
+      "quad has cables along x and y. triangle adds one diagonal per cell, all in the same direction. alternating "    \
+      "adds one diagonal per cell, in alternating directions. diagonal has four half diagonals per cell that meet "    \
+      "in a node at its middle, and the boundary cables along x and y. All patterns except quad omit cables "          \
+      "between two supports")                                                                                          \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
       "Spacing of the nodes along the directrix: equal arc length, or equal projected (x) spacing")                    \
     X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", HF_WORDS("outer_edge", "module_edges"),                \
@@ -127,9 +127,9 @@ typedef struct {
     X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", HF_WORDS("module_corners", "ribs", "perimeter"),   \
       "Fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")                      \
     X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
-      "Length of ties (boundary cables, law length) that connect the nodes of the outer edge to supports outside "     \
-      "of them, along x or y, and along both at the corners of the net. 0: the nodes of the outer edge are "           \
-      "themselves the supports")                                                                                       \
+      "Length of the edge ties, which are boundary cables with law length. They connect the nodes of the outer "       \
+      "edge to supports outside of the edge. The ties run along x or y, and along both at the corners of the net. "    \
+      "0: the nodes of the outer edge are supports themselves")                                                        \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the parabolic cylinder.
@@ -183,8 +183,8 @@ typedef struct {
     X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL,                                                           \
       "Number of cells from the middle of the aperture to its rim")                                                    \
     X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", HF_WORDS("triangle", "quad"),                                \
-      "triangle: three families of cables, with rings of 6, 12, 18, ... nodes. The nodes of the last ring are "        \
-      "supports on the rim; quad: cables along x and y that end at supports on the rim")                               \
+      "triangle has three families of cables, with rings of 6, 12, 18, ... nodes. The nodes of the last ring are "     \
+      "supports on the rim. quad has cables along x and y that end at supports on the rim")                            \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \
       "Spacing of the nodes along a radius of the aperture: equal projected spacing, or equal arc length on a "        \
       "paraboloid around the middle of the aperture")                                                                  \

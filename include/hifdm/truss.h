@@ -155,7 +155,8 @@ typedef struct {
     X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL, "Thermal expansion of the tubes")            \
     X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL, "Mass of the hinges at each node")             \
     X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", HF_WORDS("euler_bernoulli", "timoshenko"),          \
-      "Beam theory: without shear deformation, or with a shear area of half the cross-section (thin round tube)")      \
+      "Beam theory. euler_bernoulli has no shear deformation. timoshenko has a shear area of half the "                \
+      "cross-section (thin round tube)")                                                                               \
     X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word,                                                \
       "Joints of the members: rigid (clamped to their nodes), or pinned (axial force only)")                           \
     X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", HF_WORDS("central_module", "central_module_rear"), \

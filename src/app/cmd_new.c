@@ -211,9 +211,9 @@ const hf_command hf_cmd_new = {
     .name = "new",
     .argument = "NAME",
     .help = "write NAME.yaml, a commented case that runs without changes",
-    .about = "Without options, the case is a round reflector of two nets that ties connect. With --import, hifdm new "
-             "also writes the tables NAME_nodes.csv and NAME_cables.csv of a small net. hifdm new never replaces a "
-             "file.",
+    .about = "Without options, the case is a round reflector with two nets, which ties connect. With --import, hifdm "
+             "new also writes the tables NAME_nodes.csv and NAME_cables.csv of a small net. hifdm new never replaces "
+             "a file.",
     .examples = "hifdm new dish\n"
                 "hifdm new mine --import",
     .run = command_new,

@@ -49,7 +49,7 @@ hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages
 const hf_command hf_cmd_run = {
     .name = "run",
     .argument = "CASE",
-    .help = "run what the case file contains and store it in one HDF5 file",
+    .help = "run a case and store its results in one HDF5 file",
     .about = "The case file determines the stages. Form-finding always runs. If the case has a section optimize, the "
              "genetic algorithm and Levenberg-Marquardt follow. If it has a section tolerance, hifdm also computes "
              "samples of the as-built net. The run stores every generation. To resume a run that was killed or "

@@ -121,7 +121,7 @@ static hf_status command_schema(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_schema = {
     .name = "schema",
     .help = "print every key of a case file: type, range, default, meaning",
-    .about = "The output is itself a case file with comments, with every key at its default.",
+    .about = "The output is a case file with comments that has every key at its default.",
     .examples = "hifdm schema | less",
     .run = command_schema,
 };

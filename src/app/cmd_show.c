@@ -59,7 +59,7 @@ const hf_command hf_cmd_show = {
         "hifdm show prints the summary of a run: first the result, then a row for each stage, and the warnings last. "
         "--verbose adds certificates, the tension ratios of sets, the objectives, the surface of every stage, and "
         "times.\nFor a merged study, hifdm show prints the axes, the values that all points share, and a table of the "
-        "points in which the best one is marked. With --verbose it prints all points of a large study.",
+        "points. The best point is marked. With --verbose it prints all points of a large study.",
     .examples = "hifdm show chen2022.h5\n"
                 "hifdm show chen2022.h5 --verbose\n"
                 "hifdm show chen2022.h5 --json\n"

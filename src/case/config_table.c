@@ -55,9 +55,9 @@ const hf_field hf_field_table[] = {
     {"title", HF_FIELD_TEXT, AT(title), 0, sizeof((hf_case *)0)->title, "", "", NULL, "Title in one line"},
 
     {"scene.EA_inner_N", HF_FIELD_DOUBLE, AT(EA_N[0]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
-     "Axial stiffness EA of the inner cables to which the net gives none. Cut lengths need it"},
+     "Axial stiffness EA of the inner cables to which the net gives none. Cut lengths require EA"},
     {"scene.EA_boundary_N", HF_FIELD_DOUBLE, AT(EA_N[1]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
-     "Axial stiffness EA of the boundary cables to which the net gives none. Cut lengths need it"},
+     "Axial stiffness EA of the boundary cables to which the net gives none. Cut lengths require EA"},
 
 #define FIELD(section, member, type, ...) {"scene." #section "." #member, type, AT(section.member), __VA_ARGS__},
 #define FIELDS(section, type, KEYS, help) KEYS(FIELD, section)
@@ -66,24 +66,24 @@ const hf_field hf_field_table[] = {
 #undef FIELD
 
         {"scene.import.nodes", HF_FIELD_TEXT, AT(nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-         "CSV id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N] of the nodes. The path is relative to the case file"},
+         "CSV file id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N] of the nodes. The path is relative to the case file"},
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-     "CSV id,i,j,group,law,value[,EA_N,set] of the cables. The path is relative to the case file"},
+     "CSV file id,i,j,group,law,value[,EA_N,set] of the cables. The path is relative to the case file"},
 
     {"scene.import.facets", HF_FIELD_TEXT, AT(facets_path), 1, HF_PATH_SIZE, "", "", NULL,
-     "CSV id,a,b,c[,d] with the nodes around each facet; a triangle has no d. The path is relative to the case file. "
-     "Default: hifdm finds the facets from the cables"},
+     "CSV file id,a,b,c[,d] with the nodes around each facet. A triangle has no d. The path is relative to the case "
+     "file. Default: hifdm finds the facets from the cables"},
 
     {"surface.kind", HF_FIELD_WORD, AT(surface.kind), 0, 0, "auto", "", hf_surface_kind_word,
-     "Target surface. parabolic_cylinder: z = x^2/(4f) along y; paraboloid: z = (x^2 + y^2)/(4f); auto: the surface "
-     "of a generated net, or the surface on which the inner nodes of an imported net lie"},
+     "Target surface. parabolic_cylinder is z = x^2/(4f) along y. paraboloid is z = (x^2 + y^2)/(4f). auto selects "
+     "the surface of a generated net, or the surface on which the inner nodes of an imported net lie"},
     {"surface.focal_length_m", HF_FIELD_DOUBLE, AT(surface.focal_length_m), HF_ABOVE_ZERO, 1e9, "", "m", NULL,
      "Focal length of the target surface. Default: the focal length of a generated net"},
     {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
      "Width of the flat strips along y, for the faceting error. Default: the width of a cell of parabolic_cylinder"},
     {"surface.mesh_tension_N_per_m", HF_FIELD_DOUBLE, AT(surface.mesh_tension_N_per_m), 0, 1e6, "0", "N/m", NULL,
-     "Tension of the mesh, the same in all directions. It bends the cables between two facets, and the facets become "
-     "pillows. 0: the facets are flat"},
+     "Tension of the mesh, the same in all directions. The mesh bends the cables between two facets, so the facets "
+     "become pillows. 0: the facets are flat"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
      "Up to 32 frequencies at which hifdm reports the gain loss (Ruze)"},
 
@@ -94,35 +94,36 @@ const hf_field hf_field_table[] = {
     {"surface.pattern.phi_deg", HF_FIELD_DOUBLE_LIST, AT(surface.pattern.phi_deg), -360, 360, "[0, 90]", "deg", NULL,
      "Angles of up to 8 cuts, from +x towards +y"},
     {"surface.pattern.feed.kind", HF_FIELD_WORD, AT(surface.pattern.feed), 0, 0, "auto", "", hf_feed_word,
-     "point: a point source; line: a line source along y; plane_wave: a plane wave that travels along -z; auto: line "
-     "for a parabolic cylinder, point for a paraboloid"},
+     "point is a point source, line is a line source along y, and plane_wave is a plane wave that travels along -z. "
+     "auto selects line for a parabolic cylinder and point for a paraboloid"},
     {"surface.pattern.feed.position_m", HF_FIELD_VECTOR, AT(surface.pattern.position_m), -1e9, 1e9, "", "m", NULL,
      "Position of the point source, or of a point on the line source. Default: the focus of the target surface"},
     {"surface.pattern.feed.aim_m", HF_FIELD_VECTOR, AT(surface.pattern.aim_m), -1e9, 1e9, "", "m", NULL,
      "Point at which the feed aims. Default: the middle of the aperture, on the target surface"},
     {"surface.pattern.feed.cos_power", HF_FIELD_DOUBLE, AT(surface.pattern.cos_power), 0, 1e4, "", "", NULL,
-     "Exponent q. The field of the feed is proportional to cos^q of the angle from its axis, and its power to "
-     "cos^(2q). Default: the q with which the power at the edge of the facets is 10 dB lower, without the effect of "
-     "the distances"},
+     "Exponent q. The field of the feed is proportional to cos^q of the angle from its axis, and the power of the "
+     "feed is proportional to cos^(2q). Default: the value with which the power at the edge of the facets is 10 dB "
+     "below the power on the axis, without the effect of the distances"},
     {"surface.pattern.feed.polarisation", HF_FIELD_WORD, AT(surface.pattern.polarisation), 0, 0, "x", "",
      HF_WORDS("x", "y"),
      "Polarisation of the electric field on the axis of the feed. For a line source: across the "
      "line or along it"},
 
     {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", hf_method_word,
-     "newton: every cable obeys its own law, solved by Newton's method on the energy; hifdm: the same laws, solved "
-     "by the iteration of the paper (Eqs. 7, 8); iterative_fdm: every cable keeps a given tension (Eq. 7); fdm: one "
-     "linear solve with the initial force densities (Eqs. 5, 6); auto: newton where it applies, otherwise hifdm"},
+     "With newton, every cable obeys its own law, solved by Newton's method on the energy. With hifdm, the iteration "
+     "of the paper (Eqs. 7, 8) solves the same laws. With iterative_fdm, every cable keeps a given tension (Eq. 7). "
+     "fdm is one linear solve with the initial force densities (Eqs. 5, 6). auto selects newton where it applies, "
+     "otherwise hifdm"},
     {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
      "Uniform tension Td of the inner cables"},
     {"form.prestress", HF_FIELD_WORD, AT(form.prestress), 0, 0, "given", "", HF_WORDS("given", "exact"),
-     "given: every cable keeps its law; exact: every cable gets the force density that holds all nodes at their "
-     "target positions. The tensions are then as close as equilibrium allows to those of the laws tension and "
-     "force_density, and as uniform as possible where the laws give none (length, elastic)"},
+     "With given, every cable keeps its law. With exact, every cable gets the force density that holds all nodes at "
+     "their target positions. The tensions are then as close as equilibrium allows to those of the laws tension and "
+     "force_density. They are as uniform as possible for cables with the laws length and elastic"},
     {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", hf_stop_rule_word,
-     "When the iteration stops. residual: equilibrium and lengths are within the tolerances; rms_change: psi changes "
-     "by less than rms_tolerance_m. The paper uses rms_change, which stops before equilibrium; use it only to "
-     "reproduce the paper"},
+     "Stopping rule of the iteration. With residual, it stops when equilibrium and lengths are within the "
+     "tolerances. With rms_change, it stops when psi changes by less than rms_tolerance_m. The paper uses "
+     "rms_change, which stops before equilibrium. Use this rule only to reproduce the paper"},
     {"form.residual_tolerance", HF_FIELD_DOUBLE, AT(form.residual_tolerance), 1e-13, 1, "1e-7", "", NULL,
      "Maximum residual force of a node, relative to the pretension"},
     {"form.length_tolerance", HF_FIELD_DOUBLE, AT(form.length_tolerance), 1e-13, 1, "1e-7", "", NULL,
@@ -130,21 +131,21 @@ const hf_field hf_field_table[] = {
     {"form.rms_tolerance_m", HF_FIELD_DOUBLE, AT(form.rms_tolerance_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
      "Change of psi between two iterations below which rms_change stops (0.001 mm in the paper)"},
     {"form.max_iterations", HF_FIELD_INT, AT(form.max_iterations), 1, 10000000, "100000", "", NULL,
-     "Maximum number of iterations. A shape that needs more is not converged"},
+     "Maximum number of iterations. A shape that needs more iterations is not converged"},
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
      "A cable with law tension has collapsed if its length is below this fraction of its length at the target "
      "positions"},
     {"form.factor", HF_FIELD_WORD, AT(form.factor), 0, 0, "own", "", HF_WORDS("own", "lapack"),
-     "own: band Cholesky factorisation of hifdm; lapack: dpbtrf and dpbtrs of LAPACK for the positive definite "
-     "matrices of form-finding, of designs and of refinement. With lapack, hifdm factors the matrix of each design. "
-     "Certificates and as-built nets always use own"},
+     "own is the band Cholesky factorisation of hifdm. lapack uses dpbtrf and dpbtrs of LAPACK for the positive "
+     "definite matrices of form-finding, of designs and of refinement. With lapack, hifdm factors the matrix of each "
+     "design. Certificates and as-built nets always use own"},
 
     {"coupling.tof_m", HF_FIELD_DOUBLE, AT(form.coupling.tof_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
      "The coupling has converged when no attachment moves farther than this in one step. The paper uses 1e-3"},
     {"coupling.scheme", HF_FIELD_WORD, AT(form.coupling.scheme), 0, 0, "auto", "", hf_coupling_scheme_word,
-     "plain: the loop of the paper; accelerated: the same loop with Anderson acceleration, which needs fewer "
-     "form-findings and also converges for softer trusses; auto: accelerated. If that is slow and Newton's method "
-     "solves the net, auto solves net and truss in one matrix"},
+     "plain is the loop of the paper. accelerated adds Anderson acceleration, which needs fewer form-findings and "
+     "also converges for softer trusses. auto begins with accelerated. If that is slow and Newton's method solves "
+     "the net, auto solves net and truss in one matrix"},
     {"coupling.max_iterations", HF_FIELD_INT, AT(form.coupling.max_iterations), 1, 1000000, "200", "", NULL,
      "Maximum number of form-findings in the coupling"},
 
@@ -159,34 +160,35 @@ const hf_field hf_field_table[] = {
     {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
      "hifdm adds no further adjustment when the figure is below this value"},
     {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_adjust_figure_word,
-     "RMS figure that the adjustments minimise. psi: distance of the inner nodes to the positions that adjust.aim "
-     "selects; surface: distance of the inner nodes to the target surface, along its normal; facets: distance of the "
-     "facets to the target surface"},
+     "RMS figure that the adjustments minimise. psi is the distance of the inner nodes from the positions that "
+     "adjust.aim selects. surface is the distance of the inner nodes from the target surface, along its normal. "
+     "facets is the distance of the facets from the target surface"},
     {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "design", "", hf_aim_word,
-     "Positions for the figure psi. design: the shape of the design, which also restores its tensions; "
-     "target_positions: the target positions, even for nodes that the design places elsewhere on purpose"},
+     "Positions from which the figure psi is measured. design selects the positions in the shape of the design, so "
+     "the adjustments also restore its tensions. target_positions selects the target positions, including for nodes "
+     "that the design deliberately places elsewhere"},
     {"adjust.sigma_m", HF_FIELD_DOUBLE, AT(adjust.sigma_m), HF_ABOVE_ZERO, BIG, "", "m", NULL,
      "Standard deviation of each measured coordinate of nodes without their own sigma_m"},
 
     {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", hf_optimize_method_word,
-     "ga: genetic algorithm; lm: Levenberg-Marquardt from the tensions of form-finding; ga+lm: Levenberg-Marquardt "
-     "from the best design of the genetic algorithm. With ga, optimize.refine reports that optimum only for "
-     "comparison"},
+     "ga is the genetic algorithm. lm is Levenberg-Marquardt from the tensions of form-finding. ga+lm refines the "
+     "best design of the genetic algorithm by Levenberg-Marquardt. With ga, optimize.refine reports this refined "
+     "design only for comparison"},
     {"optimize.refine", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", HF_WORDS("auto", "true", "false"),
-     "Whether Levenberg-Marquardt also improves the best design of the genetic algorithm, for comparison. auto: only "
-     "if this takes little time, or less than a tenth of the time of the genetic algorithm"},
+     "Whether hifdm also refines the best design of the genetic algorithm by Levenberg-Marquardt, for comparison. "
+     "auto refines it only if this takes little time, or less than a tenth of the time of the genetic algorithm"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
-     "How the pretension T' of a design acts on a boundary cable. force_density: the cable keeps q = T'/L*, which "
-     "always gives a unique shape; tension: the cable keeps T'; seeded: Eq. 8 starts from q = T'/L* and stops by "
-     "rms_change, so its optimum depends on the iteration at which it stops"},
+     "Rule that determines how the pretension T' of a design acts on a boundary cable. With force_density, the cable "
+     "keeps q = T'/L*, so the shape is always unique. With tension, the cable keeps T'. With seeded, Eq. 8 starts "
+     "from q = T'/L* and stops by rms_change, so the optimum depends on the iteration at which it stops"},
     {"optimize.symmetry", HF_FIELD_WORD, AT(optimize.symmetry), 0, 0, "none", "", hf_symmetry_word,
      "Boundary cables that are mirror images of each other change by the same amount, so a design has fewer "
      "variables. The mirror planes are in the middle of the net along x, along y, or both. auto: those of the two "
      "planes about which the net is symmetric"},
     {"optimize.solver", HF_FIELD_WORD, AT(optimize.solver), 0, 0, "auto", "", hf_solver_word,
-     "Solver of the individuals. chord: all designs share one factored Newton matrix, and one pass solves eight "
-     "designs; newton: each design has its own matrix; fixed_point: the iteration of the paper; auto: the first of "
-     "chord, newton and fixed_point that applies"},
+     "Solver of the individuals. With chord, all designs share one factored Newton matrix, and one pass solves eight "
+     "designs. With newton, each design has its own matrix. fixed_point is the iteration of the paper. auto selects "
+     "the first of these solvers that applies"},
     {"optimize.population", HF_FIELD_INT, AT(optimize.population), 2, 100000, "50", "", NULL, "Number of individuals"},
     {"optimize.generations", HF_FIELD_INT, AT(optimize.generations), 1, 1000000, "400", "", NULL,
      "Maximum number of generations"},
@@ -207,17 +209,21 @@ const hf_field hf_field_table[] = {
     {"optimize.mutation_low", HF_FIELD_DOUBLE, AT(optimize.mutation_low), 0, 1, "0.001", "", NULL, "Pm2"},
     {"optimize.variation", HF_FIELD_WORD, AT(optimize.variation), 0, 0, "difference", "",
      HF_WORDS("difference", "chain"),
-     "difference: a crossover moves an elite along the difference of two parents, and children replace worse "
-     "individuals; chain: a crossover mixes two parents chain by chain, and children replace the whole generation"},
+     "With difference, a crossover moves an elite along the difference of two parents, and children replace worse "
+     "individuals. With chain, a crossover mixes two parents chain by chain, and children replace the whole "
+     "generation"},
     {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
-     "Number of best individuals that survive unchanged. The crossovers of variation difference start from them"},
+     "Number of best individuals that survive unchanged. With variation: difference, the crossovers start from these "
+     "individuals"},
     {"optimize.stagnation_tolerance_m", HF_FIELD_DOUBLE, AT(optimize.stagnation_tolerance_m), 0, BIG, "1e-6", "m", NULL,
-     "The genetic algorithm stops when the best psi or merit has improved by less than this over the window below"},
+     "Stagnation tolerance. The genetic algorithm stops if the best psi or merit improves by less than this value in "
+     "stagnation_generations generations"},
     {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,
-     "Number of generations in this window"},
+     "Number of generations over which stagnation_tolerance_m is measured"},
     {"optimize.store", HF_FIELD_WORD, AT(optimize.store), 0, 0, "all", "", hf_keep_word,
-     "What the result file stores of the generations in addition to their figures. all: all individuals; best: the "
-     "best individual of each generation; every: one generation in store_every. The last generation is always stored"},
+     "Individuals that the result file stores. With all, it stores every individual. With best, it stores the best "
+     "individual of each generation. With every, it stores one generation in store_every. The last generation is "
+     "always stored"},
     {"optimize.store_every", HF_FIELD_INT, AT(optimize.store_every), 2, 1000000, "100", "", NULL,
      "With store: every, generations 0, n, 2n, ... are stored"},
     {"optimize.refine_steps", HF_FIELD_INT, AT(optimize.refine_steps), 1, 100000, "200", "", NULL,
@@ -226,7 +232,7 @@ const hf_field hf_field_table[] = {
      "Number of nets with errors from which objectives over samples are computed. All designs have the same errors: "
      "the first samples that tolerance.sampling random draws"},
     {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, HF_FRONT_POINTS_MAX, "21", "", NULL,
-     "Number of points of optimize.front that Levenberg-Marquardt finds, with both ends"},
+     "Number of points of optimize.front that Levenberg-Marquardt finds, including both ends"},
 
     {"tolerance.sigma_cut_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_cut_m), 0, 1, "0", "m", NULL,
      "Standard deviation of each cut length"},
@@ -238,25 +244,25 @@ const hf_field hf_field_table[] = {
      "Standard deviation of each coordinate of each support. For an attachment, this is the position before the "
      "truss deflects"},
     {"tolerance.sigma_temperature_K", HF_FIELD_DOUBLE, AT(tolerance.sigma_temperature_K), 0, 1000, "0", "K", NULL,
-     "Standard deviation of the temperature, which is the same for all cables. It needs cables.expansion_per_K. For "
-     "the truss use tolerance.truss"},
+     "Standard deviation of the temperature, which is the same for all cables. This key requires "
+     "cables.expansion_per_K. For the truss, use tolerance.truss"},
     {"tolerance.distribution", HF_FIELD_WORD, AT(tolerance.distribution), 0, 0, "normal", "", hf_distribution_word,
-     "Distribution of each error. normal; uniform: up to 1.73 times the standard deviation"},
+     "Distribution of each error. A uniform distribution extends to 1.73 times the standard deviation"},
     {"tolerance.batch", HF_FIELD_DOUBLE, AT(tolerance.batch), 0, 1, "0", "", NULL,
      "Correlation of the errors of sigma_cut_ratio, and of the errors of sigma_EA_ratio, among the cables of one "
-     "spool. A spool is a set of the net. A cable of several sets belongs to the first one by name, and a cable "
-     "without a set to inner or boundary"},
+     "spool. A spool is a set of the net. A cable that is in several sets belongs to the first set by name. A cable "
+     "without a set belongs to the spool inner or boundary"},
     {"tolerance.samples", HF_FIELD_INT, AT(tolerance.samples), 10, 100000000, "1000", "", NULL,
      "Number of samples. With fewer than 10 samples, the 95 % confidence intervals, which assume normal "
      "distributions, would be more than 15 % too narrow"},
     {"tolerance.seed", HF_FIELD_UINT64, AT(tolerance.seed), 0, 18446744073709551615.0, "1", "", NULL,
      "Seed of the random numbers. The same seed gives the same samples with any number of threads"},
     {"tolerance.sampling", HF_FIELD_WORD, AT(tolerance.sampling), 0, 0, "random", "", hf_sampling_word,
-     "random: random numbers; sobol: Sobol's sequence in the 40 directions of errors that change the shape most, "
-     "which converges faster"},
+     "random uses random numbers. sobol uses Sobol's sequence in the 40 directions of errors that change the shape "
+     "most, which converges faster"},
     {"tolerance.required_yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL,
-     "Required fraction of samples that meet tolerance.require. The run reports the factor by which all errors may "
-     "grow or must shrink. 0: no report"},
+     "Required fraction of samples that meet tolerance.require. If it is above 0, the run reports the factor by "
+     "which all errors may grow or must shrink"},
 
 #define FIELD(section, member, type, ...) {"truss." #member, type, AT(section.member), __VA_ARGS__},
     HF_TRUSS_KEYS(FIELD, truss)
@@ -278,10 +284,10 @@ const hf_field hf_field_table[] = {
 #undef FIELD
 
                     {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-                     "CSV id,x_m,y_m,z_m,fixed[,mass_kg] of the nodes. fixed is a list of ux uy uz rx ry rz, or all, "
-                     "or empty. The path is relative to the case file"},
+                     "CSV file id,x_m,y_m,z_m,fixed[,mass_kg] of the nodes. fixed is a list of ux uy uz rx ry rz, or "
+                     "all, or empty. The path is relative to the case file"},
     {"truss.import.members", HF_FIELD_TEXT, AT(truss_members_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-     "CSV "
+     "CSV file "
      "id,i,j,E_Pa,A_m2[,G_Pa,Iy_m4,Iz_m4,J_m4,Asy_m2,Asz_m2,roll_rad,density_kg_per_m3,expansion_per_K,joint,unit] "
      "of the members. joint is rigid or pinned. The path is relative to the case file"},
 };
@@ -296,18 +302,18 @@ static const hf_field variable_field[] = {
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
      "Cables that vary, or cables whose supports vary: a set of the net, or inner, boundary, all"},
     {"vary", HF_FIELD_WORD, IN(vary), 0, 0, NULL, "", hf_vary_word,
-     "Quantity that varies. tension (N), force_density (N/m), length (m): the cable keeps this value; "
-     "unstressed_length (m): for cables with law elastic; support_z, support_normal, support_xyz (m): the "
-     "displacement of the supports at the ends of the cables, along z, along the normal of the target surface, or in "
-     "all three directions"},
+     "Quantity that varies. With tension (N), force_density (N/m) or length (m), the cable keeps the value. "
+     "unstressed_length (m) is for cables with law elastic. support_z, support_normal and support_xyz (m) displace "
+     "the supports at the ends of the cables along z, along the normal of the target surface, or in all three "
+     "directions"},
     {"range", HF_FIELD_AMOUNT, IN(range), HF_ABOVE_ZERO, BIG, "", "", NULL,
      "Maximum change from the value after form-finding, in the unit of the quantity or in per cent of the value. "
      "Default: as far as the bounds allow"},
     {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, "", "", NULL,
      "Lower and upper bound, in the unit of the quantity. Default: none"},
     {"link", HF_FIELD_WORD, IN(link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry"),
-     "Variables that change by the same amount. each: every cable changes on its own; set: all cables of the row "
-     "change together; symmetry: mirror images change together (optimize.symmetry)"},
+     "Variables that change together. With each, every cable changes on its own. With set, all cables of the row "
+     "change by the same amount. With symmetry, mirror images change by the same amount (optimize.symmetry)"},
 };
 #undef IN
 
@@ -328,20 +334,22 @@ static const hf_field objective_field[] = {
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
      "Mass of the cables per metre, required for the figure mass"},
     {"along", HF_FIELD_WORD, IN(along), 0, 0, "normal", "", HF_WORDS("normal", "half_path"),
-     "Distance for surface and facets. normal: along the normal; half_path: half the change of the path of a ray"},
+     "Distance that surface and facets measure. normal is the distance along the normal. half_path is half the "
+     "change of the path of a ray"},
     {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", HF_WORDS("none", "best"),
      "Reference for surface and facets: the target surface itself, or its best fit to the shape"},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
      "Frequency of the figure gain. Default: the highest of surface.frequencies_Hz"},
     {"load_case", HF_FIELD_TEXT, IN(load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "Name of a load case. The figure is then that of the as-built net in this load case; all: in all load cases"},
+     "Name of the load case in which the figure is computed on the as-built net. all computes the figure in all load "
+     "cases"},
     {"over", HF_FIELD_WORD, IN(over), 0, 0, "design", "", hf_over_word,
      "Nets from which the figure is computed: the design itself, or samples with the errors of `tolerance`"},
     {"take", HF_FIELD_WORD, IN(take), 0, 0, "mean", "", hf_take_word,
-     "How the values of all load cases or samples combine. mean: RMS value; worst: maximum"},
+     "Combination of the values of all load cases or samples. mean is their RMS value, and worst is their maximum"},
     {"quantile", HF_FIELD_DOUBLE, IN(quantile), HF_ABOVE_ZERO, 1, "", "", NULL,
-     "Quantile over the samples, in place of take: this fraction of the samples has no larger value. Only for method "
-     "ga"},
+     "Quantile over the samples, in place of take. This fraction of the samples has no larger value. Only the method "
+     "ga supports this key"},
     {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
      "Weight of this objective in the merit of a design, the square root of the sum of (weight * value)^2"},
 };
@@ -351,8 +359,8 @@ static const hf_field objective_field[] = {
 _Static_assert(IN(upper) == IN(lower) + sizeof(double), "bounds are bounds");
 static const hf_field limit_field[] = {
     {"figure", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_limit_word,
-     "tension: tension of each cable of the set (N); ratio: maximum tension of the set divided by its minimum "
-     "tension; deflection: deflection of the truss at each attachment (m)"},
+     "tension limits the tension of each cable of the set (N). ratio limits the maximum tension of the set divided "
+     "by its minimum tension. deflection limits the deflection of the truss at each attachment (m)"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL, "Cables of tension and ratio. Default: all"},
     {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, NULL, "", NULL, "Lower and upper bound"},
 };
@@ -381,14 +389,15 @@ static const hf_field load_case_field[] = {
     {"name", HF_FIELD_TEXT, IN(name), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
      "Name of the load case, of letters, digits, _ and -. Rows with the same name form one load case"},
     {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "Cables that have the temperature: a set of the net, or inner, boundary, all"},
+     "Cables to which the temperature applies: a set of the net, or inner, boundary, all"},
     {"part", HF_FIELD_WORD, IN(part), 0, 0, "all", "", hf_part_word,
-     "Part that has the temperature: net and truss, all cables, the truss, or the members of a unit of the truss"},
+     "Part to which the temperature applies: net and truss, all cables, the whole truss, or the members of one truss "
+     "unit"},
     {"temperature_K", HF_FIELD_DOUBLE, IN(temperature_K), -1e4, 1e4, "", "K", NULL,
      "Difference from the temperature at which the cables were cut and the truss was made. If several rows of a load "
      "case give the temperature of a part, the last row applies"},
     {"gradient_K_per_m", HF_FIELD_VECTOR, IN(gradient_K_per_m), -1e4, 1e4, "", "K/m", NULL,
-     "Temperature gradient, added to temperature_K. It adds nothing at the origin"},
+     "Temperature gradient. It adds to temperature_K, in proportion to the distance from the origin"},
     {"gravity_m_per_s2", HF_FIELD_DOUBLE, IN(gravity_m_per_s2), HF_ABOVE_ZERO, 1e6, "", "m/s2", NULL,
      "Acceleration of gravity, for the weight of cables, nodes and truss"},
     {"direction", HF_FIELD_VECTOR, IN(direction), -1e9, 1e9, "", "", NULL,
@@ -419,9 +428,9 @@ static const hf_field require_field[] = {
 #define IN(member) offsetof(hf_truss_heat_settings, member)
 static const hf_field truss_heat_field[] = {
     {"part", HF_FIELD_WORD, IN(part), 0, 0, NULL, "", hf_part_word + HF_PART_TRUSS,
-     "Members that have this temperature: the whole truss, or a unit of it"},
+     "Members to which this temperature applies: the whole truss, or one truss unit"},
     {"sigma_temperature_K", HF_FIELD_DOUBLE, IN(sigma_temperature_K), HF_ABOVE_ZERO, 1000, NULL, "K", NULL,
-     "Standard deviation of this temperature. It needs truss.expansion_per_K"},
+     "Standard deviation of this temperature. This key requires truss.expansion_per_K"},
 };
 #undef IN
 
@@ -442,8 +451,8 @@ const hf_list hf_list_table[] = {
     /* A row of optimize.front has the keys of a row of optimize.objective without the last one, weight. */
     LIST("optimize.front", optimize.n_front, optimize.front, HF_FRONT_OBJECTIVES_MAX, objective_field,
          N_KEY(objective_field) - 1,
-         "Two or three objectives of a Pareto front. The run then finds the front in place of one design: the "
-         "designs that no other design dominates"),
+         "Two or three objectives of a Pareto front. The run then finds the front instead of one design. No other "
+         "design dominates a design of the front"),
     LIST("optimize.limits", optimize.n_limit, optimize.limit, HF_DESIGN_ROWS_MAX, limit_field, N_KEY(limit_field),
          "Limits that a design must satisfy. Without rows, there are none"),
     LIST("cables", built.n_cable, built.cable, HF_MATERIAL_ROWS_MAX, cable_field, N_KEY(cable_field),

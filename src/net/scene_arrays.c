@@ -184,7 +184,8 @@ hf_status hf_scene_from_arrays(const hf_scene_arrays *a, const double group_EA_N
     int n_fault = 0;
     *s = (hf_scene){0};
     if (a->n_node < 1 || a->n_cable < 1)
-        return hf_error(messages, HF_BAD_CASE, "scene: %d nodes and %d cables are not a net", a->n_node, a->n_cable);
+        return hf_error(messages, HF_BAD_CASE, "scene: %d nodes and %d cables do not form a net", a->n_node,
+                        a->n_cable);
     bool with_EA = a->EA_N || group_EA_N[0] > 0 || group_EA_N[1] > 0;
     hf_status status = hf_scene_allocate(s, a->n_node, a->n_cable, any_is_loaded(a), with_EA, false);
     if (status == HF_OK) status = take_ids(a, s, &n_fault, messages);

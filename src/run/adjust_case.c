@@ -253,8 +253,9 @@ static hf_status find_prior(job *j, hf_messages *messages)
     if (j->problem.settings.tolerance.n_truss)
         hf_warning(
             messages,
-            "%s: tolerance.truss is not estimated: adjust assumes that the truss is as it was made. Measure when "
-            "it has the temperature of the workshop, or include its displacements in tolerance.sigma_support_m",
+            "%s: hifdm adjust does not estimate the temperatures in tolerance.truss. It assumes that the truss has "
+            "the temperature at which it was made. Measure the net at this temperature, or include the displacements "
+            "of the truss in tolerance.sigma_support_m",
             j->path);
     for (int e = 0; e < j->built.model.n_cable; e++)
         largest = fmax(largest, j->prior.sigma_m[e]);

@@ -90,7 +90,7 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
     if (r->n_drifting)
         hf_warning(messages,
                    "the equilibrium is not unique: %d free node%s no stiffness, mainly %s, so the position error is "
-                   "unknown. Give a cable there another law, or support the node",
+                   "unknown. Assign another law to a cable at this node, or support the node",
                    r->n_drifting, r->n_drifting == 1 ? " has" : "s have", name_node(p, r->culprit, name));
 }
 
@@ -241,15 +241,15 @@ static hf_status explain_chains(const hf_problem *p, hf_workspace *w, const hf_f
         hf_model_chain_name(&p->model, &p->scene, r->culprit, name, sizeof name);
         return hf_error(
             messages, r->status,
-            "ill-posed: the lengths of %s add up to %.10g m, but their supports are %.10g m apart, so there is "
-            "no shape. Give the cables longer L*, or another law",
+            "ill-posed: the lengths of %s add up to %.10g m, but their supports are %.10g m apart, so there is no "
+            "shape. Use a longer L* or another law for these cables",
             name, sum_m, span_m);
     }
     name_loaded_chains(p, w, &chains);
     return hf_error(messages, r->status,
                     "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
-                    "tension can balance: %s. Give them a sag (scene.parabolic_cylinder.scallop, longer L*) or another "
-                    "law, or support their nodes",
+                    "tension can balance: %s. Use a sag (scene.parabolic_cylinder.scallop, longer L*) or another law "
+                    "for these cables, or support their nodes",
                     r->n_loaded_chain, close_names(&chains));
 }
 
@@ -882,17 +882,17 @@ static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes
     if (open->n)
         hf_warning(
             messages,
-            "optimize: node %s%s moved far from its position after form-finding: by %.0f mm, and its cables are "
-            "%.0f mm long. No objective counts this: vary fewer sets of cables, or add {figure: length, set: %s, "
-            "weight: 0.1} to optimize.objective%s",
+            "optimize: node %s%s moved far from its position after form-finding, by %.0f mm, but its cables are only "
+            "%.0f mm long. No objective counts this displacement. Vary fewer sets of cables, or add {figure: length, "
+            "set: %s, weight: 0.1} to optimize.objective%s",
             p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
             form->cable_m[open->row] * 1e3, set_at(p, open->row),
             p->objectives.n_objective ? "" : " beside {figure: psi}");
     if (within->n)
         hf_warning(messages,
-                   "optimize: node %s%s moved far within the surface: by %.0f mm, and its cables are %.0f mm long. No "
-                   "objective "
-                   "counts this: vary fewer sets of cables, or add {figure: psi, weight: 0.1} to optimize.objective",
+                   "optimize: node %s%s moved far within the surface, by %.0f mm, but its cables are only %.0f mm "
+                   "long. No objective counts this displacement. Vary fewer sets of cables, or add {figure: psi, "
+                   "weight: 0.1} to optimize.objective",
                    p->scene.node_id[p->model.node_of_row[within->row]], and_more(within, more), within->move_m * 1e3,
                    form->cable_m[within->row] * 1e3);
 }

@@ -52,8 +52,8 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
         if (terms <= PATTERN_TERMS_MOST) continue;
         hf_config_location(&p->settings, "surface.frequencies_Hz", place, sizeof place);
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: at %g GHz the far field has %.3g quadrature points times %d angles: %.2g terms, but the "
-                        "maximum is %g; lower the frequency, or narrow surface.pattern.theta_deg",
+                        "%s: at %g GHz the far field needs %.3g quadrature points times %d angles, which are %.2g "
+                        "terms, but the maximum is %g. Lower the frequency, or narrow surface.pattern.theta_deg",
                         place, at->value[k] / 1e9, (double)plan.n_point, hf_pattern_angles(&plan), terms,
                         PATTERN_TERMS_MOST);
     }
@@ -297,8 +297,8 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
     bool is_row = p->model.variable, is_cable = p->model.variable_cable[k] >= 0;
     if (is_cable && !(base > 0))
         return hf_error(messages, HF_NO_FEASIBLE,
-                        "optimize: %s '%s' has no tension after form-finding, so the search cannot start. Give it a "
-                        "shorter length, or a law that keeps it taut",
+                        "optimize: %s '%s' has no tension after form-finding, so the search cannot start. Use a "
+                        "shorter length for this cable, or a law that keeps it taut",
                         is_row ? "cable" : "boundary cable", name);
     if (is_row)
         hf_messages_location(messages, where, "optimize.variables.%d", p->model.variable[k].setting);

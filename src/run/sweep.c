@@ -176,8 +176,8 @@ static bool claim(sweep *w, int i)
     if (lock == HF_LOCK_NONE && !w->is_without_locks)
         hf_warning(
             w->messages,
-            "%s: this file system has no locks, so 'hifdm status' cannot show running points; use --task so that "
-            "several sweeps do not run the same points",
+            "%s: this file system has no locks, so 'hifdm status' cannot show running points. Use --task to prevent "
+            "several sweeps from running the same points",
             w->ledger.folder);
     w->is_without_locks |= lock == HF_LOCK_NONE;
     pthread_mutex_unlock(&w->lock);

@@ -202,7 +202,8 @@ static hf_status breed_record(void *context, int generation, const void *payload
         if (b->drops) return HF_DIFFERENT;
         return hf_error(s->f.io.messages, HF_EXISTS,
                         "%s: from generation %d on, this machine or build computes other designs than the one that "
-                        "began the run. Only the latter can recover %s; nothing was changed",
+                        "began the run. Only the machine or build that began the run can recover %s. Nothing was "
+                        "changed",
                         s->f.out.path, generation + 1, s->f.journal.path);
     }
     if (!hf_generations_are_sound(&o->population))

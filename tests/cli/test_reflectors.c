@@ -136,12 +136,12 @@ START_TEST(nodes_that_no_objective_counts_are_told)
     HIFDM(0, "run", path, "-o", out, "--json");
     EXPECT(out_as("r.json"), out, "--",
            "(lambda ids, moved: (lambda k: [w for w in a['warnings'] if f'node {ids[k]}, and ' in w and "
-           "f'moved far from its position after form-finding: by {1e3 * moved[k]:.0f} mm, ' in w and 'set: rear, "
+           "f'moved far from its position after form-finding, by {1e3 * moved[k]:.0f} mm, ' in w and 'set: rear, "
            "weight' in w])"
            "(max((k for k in range(len(ids)) if ids[k][0] == 'r'), key=lambda k: moved[k])))"
            "(b['scene/node/id'].asstr()[:], np.linalg.norm(b['refine/position_m'][:] - b['form/position_m'][:], "
            "axis=1))",
-           "any('node f' in w and 'moved far within the surface: by ' in w for w in a['warnings'])");
+           "any('node f' in w and 'moved far within the surface, by ' in w for w in a['warnings'])");
     for (int k = 0; k < 2; k++) {
         HIFDM(0, "run", path, "-o", out, "--force", "--set", silent[k]);
         ck_assert_ptr_null(strstr(said.err, "moved far"));

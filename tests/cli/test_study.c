@@ -379,10 +379,10 @@ START_TEST(show_of_what_is_no_result_says_what_to_do)
 {
     const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5]\n");
     HIFDM(5, "show", path);
-    ERR("s.yaml: is not a result of hifdm, because it is not an HDF5 file, but a study: `hifdm check ");
+    ERR("s.yaml: is not a result file (HDF5) but a study. `hifdm check ");
     ERR("`hifdm merge ");
     HIFDM(5, "show", file_with("base.yaml", NET));
-    ERR("base.yaml: is not a result of hifdm, because it is not an HDF5 file, but a case: `hifdm check ");
+    ERR("base.yaml: is not a result file (HDF5) but a case. `hifdm check ");
     HIFDM(5, "show", file_with("other.txt", "words\n"));
 }
 END_TEST

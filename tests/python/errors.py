@@ -98,7 +98,7 @@ class Errors(unittest.TestCase):
             "scene: the set 'a' names a cable that there is not": {"sets": {"a": [0, 4]}},
             "scene: the set 'a' must name each cable once": {"sets": {"a": [1, 1]}},
             "scene: every node is a support": {"role": "support"},
-            "scene: 5 nodes and 0 cables are not a net": {"end": END[:0]},
+            "scene: 5 nodes and 0 cables do not form a net": {"end": END[:0]},
             "arrays:": {"form": {"pretention_N": 1}},
             "unknown key; did you mean 'pretension_N'": {"form": {"pretention_N": 1}},
             "a net from arrays needs a section scene with an import of nodes and cables, and no facets":
