@@ -158,7 +158,7 @@ START_TEST(what_cannot_be_exported_is_told)
     HIFDM(5, "export", temp("missing.h5"), "--csv", csv);
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "export", REFLECTOR, "--csv", csv);
-    ERR("reflector.yaml: is not an HDF5 file");
+    ERR("reflector.yaml: is not a result of hifdm");
     ck_assert(!is_there(csv));
     HIFDM(5, "export", form_only, "--csv", temp("no/such/folder"));
     ERR("no/such/folder: cannot create this folder: No such file or directory");

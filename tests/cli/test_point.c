@@ -178,7 +178,7 @@ START_TEST(a_wrong_point_is_refused)
     ERRS("error: %s: has no front, so it has no points; run a case with optimize.front\n", path);
     HIFDM(5, "run", c, "--point", point(temp("none.h5"), 1), "-o", other);
     HIFDM(5, "run", c, "--point", point(c, 1), "-o", other);
-    ERRS("error: %s: is not an HDF5 file", c);
+    ERRS("error: %s: is not a result of hifdm", c);
     HIFDM(5, "run", c, "--point", point(front, 3), "-o", front, "--restart");
     ERRS("error: %s: is an input of this run; choose another name\n", front);
     ck_assert(!is_there(other));
