@@ -27,7 +27,8 @@ def sentences(paragraph):
     paragraph = re.sub(r"\s+", " ", paragraph).strip()
     for text in re.split(r"(?<=[.!?])\s+(?=[A-Z\"`'(]|hifdm )", paragraph):
         words = text.split()
-        if 6 <= len(words) <= 60 and re.match(r"[A-Z]|hifdm ", text) and re.search(r"[.!?]$", text):
+        if 6 <= len(words) <= 60 and re.match(r"[A-Z]|hifdm ", text) and re.search(r"[.!?]$", text) and \
+                not text.startswith("Pipeline:"):  # a drawing
             yield text
 
 
