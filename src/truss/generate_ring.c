@@ -34,7 +34,7 @@ const char *hf_truss_ring_fault(const hf_truss_settings *s, const hf_paraboloid 
         return "height_m";
     }
     if (is_counted && (n_gap % r->cells_per_bay != 0 || n_gap / r->cells_per_bay < 3)) {
-        snprintf(what, size, "of %d must divide the %d cells at the rim into three bays or more", r->cells_per_bay,
+        snprintf(what, size, "%d must divide the %d cells at the rim into at least three bays", r->cells_per_bay,
                  n_gap);
         return "cells_per_bay";
     }

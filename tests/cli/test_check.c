@@ -230,7 +230,7 @@ START_TEST(show_refuses_what_is_no_result)
     HIFDM(5, "show", temp("missing.h5"));
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "show", REFLECTOR);
-    ERR("reflector.yaml: is not a result of hifdm, because it is not an HDF5 file");
+    ERR("reflector.yaml: is not a result file (HDF5) but a case. `hifdm check ");
     HIFDM(5, "show", temp("."));
     ERR("is a folder, not a result file");
     const char *const make_other[] = {python_program(), "-c", "import h5py, sys; h5py.File(sys.argv[1], 'w')['x'] = 1",

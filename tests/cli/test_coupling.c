@@ -141,7 +141,7 @@ START_TEST(limits_and_keys)
     HIFDM(3, "run", TRUSS, "-o", out, "--set", "truss.E_Pa=1e10", "--set", "coupling.max_iterations=2", "--set",
           "coupling.tof_m=1e-9");
     ERR("the coupling of net and truss did not converge in 2 form-findings");
-    ERR(" times the previous step; raise ");
+    ERR(" times the previous step. Raise ");
     HIFDM(3, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e10", "--set", "coupling.max_iterations=1", "--set",
           "coupling.tof_m=1e-9");
     ck_assert_msg(!strstr(said.err, "nan") && strstr(said.err, " m; raise "), "%s", said.err); /* no step before it */

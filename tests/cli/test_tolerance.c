@@ -198,7 +198,7 @@ START_TEST(a_design_outlives_samples_that_fail)
     SHELL(0, "printf zzzz | dd of=\"$1\" bs=1 seek=60 conv=notrunc 2>&1", journal);
     for (int i = 0; i < 2; i++) {
         HIFDM(5, "tolerance", c, "-o", path, "--tasks", "2");
-        ERR("is of another case");
+        ERR("belongs to another case");
         ERR("is unfinished; run the same command again to resume");
         EXPECT(path, "--", "'tolerance' not in a", "len(a['form/length_m']) > 0", "not a.attrs['finished']");
     }
