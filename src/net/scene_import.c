@@ -176,7 +176,7 @@ static hf_status read_sets(hf_csv *t, const int *where, hf_scene *s)
 
 static hf_status build(hf_csv *nodes, hf_csv *cables, const double group_EA_N[2], hf_scene *s)
 {
-    int node_where[N_NODE_COLUMN], cable_where[N_CABLE_COLUMN];
+    int node_where[N_NODE_COLUMN] = {0}, cable_where[N_CABLE_COLUMN] = {0}; /* cppcheck needs values here */
     /* Both files are read before returning, so that one run reports the faults of both. */
     hf_status node_status = hf_csv_read(nodes->path, COLUMN_MAX, nodes, nodes->messages);
     hf_status cable_status = hf_csv_read(cables->path, COLUMN_MAX, cables, cables->messages);
