@@ -145,7 +145,8 @@ export async function checkTolerance(tab, made) {
   same(number(said.match(/samples\s+([\d.]+)/)[1]), 100 * t.histogram[most], 6);
   same(number(said.match(/of ([\d.]+) to/)[1]), 1e3 * (low + (most * (high - low)) / t.histogram.length), 5);
   const text = await tab.locator("#tolerance > p").first().innerText(),
-    [, part] = text.match(/The yield is at least 90\u00a0% up to ([\d.]+)\u00a0% of these tolerances\.$/);
+    said90 = /yield is at least 90\u00a0% if all tolerances are increased to ([\d.]+)\u00a0% of their values\.$/,
+    [, part] = text.match(said90);
   same(number(part), 100 * t.sigma_scale, 4);
   const rows = await tab.locator("#tolerance tbody th").allTextContents();
   assert.deepEqual(

@@ -9,8 +9,8 @@ const FIGURE = { psi: "ψ", surface: "RMS along the normal", facets: "RMS of the
 const ADJUST_END = {
   target: "The target is met.",
   max_adjustments: "adjust.max_adjustments allows no further adjustment.",
-  doubt: "One more adjustment would improve the figure by less than the measurement error.",
-  none: "No further adjustment improves the figure.",
+  doubt: "Another turnbuckle adjustment would reduce the error by less than the measurement uncertainty.",
+  none: "No further turnbuckle adjustment reduces the error of the net.",
 };
 const adjustments = (n) => (n === 1 ? "one turnbuckle adjustment" : `${fmtCount(n)} turnbuckle adjustments`);
 
@@ -21,7 +21,7 @@ const inMm = (v, digits = 4) => `${Math.abs(1e3 * v) < RESOLVED_MM ? rounded(0, 
 function adjustText(name) {
   const expected = (value, sigma) => `expected: ${inMm(value)} ± ${fmt(1e3 * sigma, 2)}`;
   return [
-    `${fmtCount(adjust.measured_nodes)} nodes were measured. χ² is ${fmt(adjust.chi_square, 3)} per coordinate. ` +
+    `${fmtCount(adjust.measured_nodes)} nodes were measured, and χ² is ${fmt(adjust.chi_square, 3)} per coordinate. ` +
       "χ² is about 1 if the case file states the tolerances and measurement errors correctly.",
     `The most probable net has a ${name} of ${inMm(adjust.estimated_m)}` +
       ` (${expected(adjust.estimated_expected_m, adjust.estimated_sigma_m)}).` +
@@ -34,21 +34,21 @@ function adjustText(name) {
           `${inMm(adjust.design_psi_m)}.`
         : "ψ is measured from the target positions.",
     adjust.end === "target" && adjust.adjusted_expected_m > adjust.target_m
-      ? "The most probable net meets the target, but the expected figure is larger than the target."
+      ? "The error of the most probable net meets the target, but the expected error is larger than the target."
       : ADJUST_END[adjust.end] || "",
     adjust.maybe_slack
-      ? `${fmtCount(adjust.maybe_slack)} cables may be slack. The positions do not show how slack they are. ` +
-        "The figures after adjustments are therefore less certain than the value after ±."
+      ? `${fmtCount(adjust.maybe_slack)} cables may be slack. The measured positions do not show how slack these ` +
+        "cables are. The uncertainty of the values after adjustment is therefore larger than the ± value."
       : "",
     adjust.held_taut
-      ? "The adjustments keep the minimum tension of each cable. They make no additional cable slack."
+      ? "The turnbuckle adjustments maintain the minimum tension in each cable. No additional cable becomes slack."
       : "",
-    adjust.supports_estimated ? "" : "The supports are assumed to be at the positions given in the case file.",
+    adjust.supports_estimated ? "" : "All supports are assumed to be at the positions that the case file gives.",
     adjust.settled ? "" : "The estimate has not converged.",
     adjust.fits
       ? ""
-      : "χ² is larger than chance explains. Tolerances or measurement errors may be larger " +
-        "than the case file states. Supports may be displaced, or the net may have a different design.",
+      : "χ² is larger than chance explains. Tolerances or measurement errors may exceed those in the case file. " +
+        "Supports may be displaced, or the measured net may have a different design.",
   ]
     .filter((text) => text)
     .join(" ");
@@ -140,7 +140,8 @@ function otherAims() {
       "p",
       {},
       `${fmtCount(adjust.at_range)} of the adjustments above reach the limit adjust.range_m. ψ of the design is ` +
-        `${inMm(adjust.design_psi_m)}. The errors of the net alone cause ψ = ${inMm(adjust.error_psi_m)}.`,
+        `${inMm(adjust.design_psi_m)}. ` +
+        `The errors displace the inner nodes by ${inMm(adjust.error_psi_m)} (RMS) from their positions in the design.`,
     ),
     el("ul", {}, items),
   ];

@@ -83,22 +83,22 @@ function writeCables(view) {
     before = otherShape ? resultShape : shapeOf("form") || after;
   if (!after) return;
   const two = before !== after,
-    base = otherShape ? "of this result" : two ? "after form-finding" : "of the net at its target positions",
+    base = otherShape ? "in this result" : two ? "after form-finding" : "in the net at its target positions",
     families = allFamilies(),
     columns = cableColumns(before, after, families, chooserOf(view)),
     change = columns.findIndex(({ size }) => size);
   const words = [
     otherShape
-      ? "Tensions of this result and of the other result."
+      ? "The table lists the tensions of this result and of the other result."
       : two
-        ? `Tensions after form-finding and of the result (${after.name}).`
+        ? `The table lists the tensions after form-finding and those of the result (${after.name}).`
         : null,
     columns.some(({ name }) => name.startsWith("unstressed minus"))
-      ? `The unstressed length is compared with that ${base}.`
+      ? `The table shows how much the unstressed length of each cable differs from its value ${base}.`
       : null,
-    adjust ? "A positive length error means that the cable is too long." : null,
+    adjust ? "If a length error is positive, the cable is too long." : null,
     net.psi_by_cut ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack." : null,
-    net.cable_share ? "The share is the contribution of the cable to ψ² from all errors, to first order." : null,
+    net.cable_share ? "The share of the error is the first-order contribution of the errors of a cable to ψ²." : null,
   ].filter((text) => text);
   const all = sortableTable({
     caption: "Cables",

@@ -32,7 +32,12 @@ function caseDifferences() {
     lines = differences(...all.map((text) => text.slice(0, LINES_OF_CASE_MAX)));
   const cut =
     left > 0
-      ? el("p", {}, `Only the first ${LINES_OF_CASE_MAX} lines are compared, without up to ${fmtCount(left)} more.`)
+      ? el(
+          "p",
+          {},
+          `Only the first ${LINES_OF_CASE_MAX} lines of each case are compared. ` +
+            `The comparison ignores up to ${fmtCount(left)} further lines.`,
+        )
       : null;
   if (!lines.length) return [left > 0 ? cut : el("p", {}, "The two case files are identical.")];
   return [
@@ -79,9 +84,9 @@ function writeOther() {
       "p",
       {},
       otherShape
-        ? "Both results have the same net. The pictures can show the shape of the other result, and the table of " +
-            "cables has the tensions of both."
-        : "The nets differ, so the page compares only their figures.",
+        ? "The two results have the same net. The pictures can show the shape of the other result. The table of " +
+            "cables lists the tensions of both results."
+        : "The two results have different nets, so this page compares only their figures.",
     ),
     table(
       [

@@ -64,7 +64,7 @@ function frontChart(front, a, b) {
     yLabel: objectiveLabel(b),
     unit: objectiveUnit(b),
     caption: isFar
-      ? `The initial design is outside of the picture: ${objectiveName(b)} ${objectiveText(b, initial.y)}.`
+      ? `The initial design lies outside the plotted range, at ${objectiveName(b)} ${objectiveText(b, initial.y)}.`
       : null,
     x: positions.map(({ x }) => x),
     counted: false,
@@ -108,7 +108,7 @@ function writeWhose(more) {
       "p",
       { class: "whose", id: "whose" },
       isFormFinding
-        ? "Apart from the front, this page shows the form-finding shape, which is not a point of the front."
+        ? "This page shows the shape after form-finding, which is not a point of the Pareto front."
         : `This page shows the point of the front with the minimum ${objectiveName(Object.keys(front.initial)[0])}.` +
             `${asBuilt ? " As-built nets are those of the form-finding, which is no point of the front." : ""}`,
       more.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
@@ -129,8 +129,8 @@ function writeOneDesign(front, names, point) {
     el(
       "p",
       {},
-      `The objectives do not conflict: one design, point ${point.id}, is best in all of them: ${values.join(", ")}. ` +
-        `Found in ${fmtDuration(front.wall_s)}.`,
+      `The objectives do not conflict. Point ${point.id} minimises all objectives (${values.join(", ")}). ` +
+        `The computation took ${fmtDuration(front.wall_s)}.`,
     ),
     takeText(front),
   );

@@ -26,7 +26,7 @@ function writeHead() {
     : "";
   document.getElementById("subtitle").textContent = found + truss;
   document.getElementById("footer").textContent = shown(
-    `Results of hifdm ${summary.version} in ${summary.file}.`,
+    `The results in ${summary.file} were computed by hifdm ${summary.version}.`,
   );
 }
 
@@ -205,7 +205,9 @@ function writeNet() {
   section(
     "net",
     "The net",
-    shapes.length ? null : el("p", {}, "Form-finding found no shape, so this is the net at its target positions."),
+    shapes.length
+      ? null
+      : el("p", {}, "Form-finding found no shape, so the picture shows the net at its target positions."),
     el(
       "div",
       { class: "tools" },
@@ -238,9 +240,9 @@ function writeNet() {
         el(
           "span",
           { class: "keys", id: "net-keys" },
-          " Drag or press the arrow keys to rotate. Hold Shift to move. Use the wheel or + and − to zoom. " +
-            "Press 0 to reset. n and c step through nodes and cables, with Shift backwards. " +
-            "Click a cable or press Enter to mark it.",
+          " To rotate the net, drag it or press the arrow keys. Hold Shift to move it. To zoom, turn the mouse " +
+            "wheel or press + or −. Press 0 to reset the view. To step through the nodes or cables, press n or c. " +
+            "Hold Shift to step backwards. To mark a cable, click it or press Enter.",
         ),
       ),
     ),
@@ -274,7 +276,7 @@ function netCaption() {
     {},
     "Deformation from the target positions (grey) ",
     el("strong", { id: "scale-note" }),
-    `. Squares are supports${trussNote()}. The colour scale covers the deviations of the inner nodes, which enter ψ.`,
+    `. Squares are supports${trussNote()}. The colour scale covers the deviations of the inner nodes.`,
   );
 }
 
@@ -324,10 +326,10 @@ function writeMap() {
       el(
         "figcaption",
         { id: "map-caption" },
-        "The net at its target positions, seen along z. Values between the nodes are interpolated. The height is " +
-          "positive above the target surface. The distance includes displacements within the surface, as ψ does." +
+        "The map shows the net at its target positions, viewed along z. Values between the nodes are interpolated. " +
+          "The height is positive above the target surface. Like ψ, the distance includes tangential displacements." +
           (net.facets
-            ? " The colour of a facet shows the mean of its error along the normal. The error is positive above the " +
+            ? " The colour of a facet shows its mean error along the surface normal. The error is positive above the " +
               "target surface, or above the best fit to all facets."
             : ""),
       ),

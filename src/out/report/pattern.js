@@ -99,17 +99,19 @@ const FEED = { point: "a point", line: "a line", plane_wave: "a plane wave" };
 function patternText(all) {
   const { feed, cos_power: power, stride } = all[0],
     cosine = `power ${fmt(power, 3)} of the cosine of the angle from its axis`,
-    field = feed === "plane_wave" ? "" : ` whose field goes as ${cosine}`;
+    field = feed === "plane_wave" ? "" : ` whose field is proportional to ${cosine}`;
   return (
-    `The far field of the facets by physical optics, fed by ${FEED[feed] || feed}${field}. The gain is relative to ` +
-    "isotropic radiation, in the polarisation of the feed. θ is the angle from +z. A cut φ is the half plane at that " +
-    `angle from +x towards +y.${stride > 1 ? ` The maximum gain of ${stride} neighbouring angles is drawn.` : ""}`
+    "The charts show the far field of the facets, computed by physical optics. " +
+    `The feed is ${FEED[feed] || feed}${field}. The gain is relative to isotropic radiation, in the polarisation of ` +
+    "the feed. θ is the angle from +z. A cut is the half plane at the angle φ from +x towards +y." +
+    (stride > 1 ? ` Each plotted value is the maximum gain of ${stride} neighbouring angles.` : "")
   );
 }
 
 const PATTERN_NOTE =
-  "Sidelobes and cross-polarisation are relative to the maximum of the beam. " +
-  "A dash (–) means that the angles of the cut do not cover the figure or are too coarse for it.";
+  "Sidelobe levels and cross-polarisation are given relative to the maximum of the beam. " +
+  "A dash (–) means that a value cannot be computed from the angles of the cut. " +
+  "Either the angle range of the cut is too small, or its angle spacing is too coarse.";
 
 function writePattern() {
   const all = patterns();

@@ -66,7 +66,7 @@ const roundingNote = () =>
   el(
     "span",
     {},
-    "The inner nodes are within 1 nm of their target positions. This difference is rounding error, so all nodes " +
+    "All inner nodes are within 1 nm of their target positions. Such deviations are rounding errors, so all nodes " +
       "have one neutral colour.",
   );
 

@@ -10,7 +10,7 @@ const spaced = ({ n, stride }) => {
   return at;
 };
 const scaled = (values, k) => values.map((v) => (typeof v === "number" ? v * k : null));
-const thinned = ({ stride }) => (stride > 1 ? ` One value in ${stride} is drawn.` : "");
+const thinned = ({ stride }) => (stride > 1 ? ` Only one of every ${stride} values is plotted.` : "");
 
 function writeHistory() {
   const h = data.history;
@@ -37,7 +37,7 @@ function writeHistory() {
     "Surface error ψ",
     "psi_m",
     "ψ",
-    "RMS distance of the inner nodes from their target positions.",
+    "ψ is the RMS distance of the inner nodes from their target positions.",
     { yLabel: "ψ (mm)", unit: "mm", floor: RESOLVED_MM },
     1e3,
   );
@@ -45,17 +45,18 @@ function writeHistory() {
     "Tension ratio, inner cables",
     "inner_tension_ratio",
     "inner ratio",
-    "Ratio of maximum to minimum tension. The value 1 means uniform tension.",
+    "The tension ratio is the maximum tension divided by the minimum tension. If the tension ratio is 1, all " +
+      "tensions are equal.",
     { yLabel: "T max / T min" },
   );
   add(
     "Tension ratio, boundary cables",
     "boundary_tension_ratio",
     "boundary ratio",
-    "Ratio of maximum to minimum tension of the boundary cables.",
+    "The tension ratio is the maximum tension divided by the minimum tension of the boundary cables.",
     { yLabel: "T max / T min" },
   );
-  const residual = "Maximum residual force of a free node. The value 0 means equilibrium.";
+  const residual = "The residual is the maximum unbalanced force at a free node. It is 0 in equilibrium.";
   add("Nodal force out of balance", "residual_N", "residual", residual, {
     yLabel: "residual (N)",
     log: true,
@@ -68,7 +69,7 @@ function writeHistory() {
       el(
         "p",
         {},
-        `${fmtCount(h.n)} linear solves from the first guess. ${sentence(stopText(summary.form.stop_reason))}`,
+        `Form-finding took ${fmtCount(h.n)} linear solves. ${sentence(stopText(summary.form.stop_reason))}`,
       ),
       el("div", { class: "charts" }, charts),
     );
@@ -91,7 +92,7 @@ function writeSearch() {
       {},
       `${ALGORITHM[o.algorithm] || o.algorithm}: ${fmtCount(o.generations)} generations with ` +
         `${fmtCount(o.evaluations)} form-findings in ${fmtDuration(o.wall_s)}. ${fmtCount(o.infeasible)} designs ` +
-        `were infeasible. ${sentence(stopText(o.stop_reason))} The best design is of generation ` +
+        `were infeasible. ${sentence(stopText(o.stop_reason))} The best design was found in generation ` +
         `${fmtCount(o.best_generation)}.`,
     ),
     el(
@@ -105,7 +106,9 @@ function writeSearch() {
         x,
         head,
         caption:
-          "Surface error of the feasible individuals. The worst individuals may lie outside the plot." + thinned(g),
+          "The plot shows the surface error ψ of the feasible individuals. The worst individuals may lie outside the " +
+          "plotted range." +
+          thinned(g),
         series: [
           {
             name: "worst",
@@ -132,7 +135,7 @@ function writeSearch() {
         unit: "mm",
         x,
         head,
-        caption: "Generations without a better design are not marked.",
+        caption: "A generation that did not improve the best design has no mark.",
         series: [{ name: "change", values: change.map((v) => (v > 0 ? v : null)), colour: "--one", dots: true }],
       }),
     ),
@@ -161,10 +164,11 @@ function writeCoupling() {
     });
   const said =
     k &&
-    `The truss deflects by up to ${fmt(1e3 * k.deflection_max_m)} mm at the attachments. ` +
+    `The truss deflects by up to ${fmt(1e3 * k.deflection_max_m)} mm at the attachments of the net. ` +
       (k.stop_reason === "converged"
-        ? `Coupling converged in ${fmtCount(k.iterations)} iterations.`
-        : `Coupling did not converge in ${fmtCount(k.iterations)} iterations: ${stopText(k.stop_reason)}.`);
+        ? `The coupling of net and truss converged in ${fmtCount(k.iterations)} iterations.`
+        : `The coupling of net and truss did not converge in ${fmtCount(k.iterations)} iterations ` +
+        `(${stopText(k.stop_reason)}).`);
   section(
     "coupling",
     "Coupling of net and truss",
@@ -176,19 +180,19 @@ function writeCoupling() {
         "Change of the elastic deformation",
         "step_m",
         "change (mm)",
-        "Maximum distance that an attachment moved in an iteration.",
+        "The plot shows the maximum displacement of the attachments of the net in each iteration.",
       ),
       one(
         "Maximum deflection",
         "deflection_max_m",
         "deflection (mm)",
-        "Maximum deflection of the attachments of the net to the truss.",
+        "The plot shows the maximum deflection of the points at which the net is attached to the truss.",
       ),
       one(
         "Surface error ψ on the truss",
         "psi_m",
         "ψ (mm)",
-        "RMS distance of the inner nodes from their target positions.",
+        "ψ is the RMS distance of the inner nodes from their target positions.",
         { floor: RESOLVED_MM },
       ),
     ),
@@ -239,7 +243,7 @@ function writeTensions() {
   section(
     "tensions",
     "Tensions",
-    el("p", {}, "Each mark is one cable. Cables are numbered within their group, in the order of the file."),
+    el("p", {}, "Each mark is one cable. The cables of each group are numbered in the order of the result file."),
     el(
       "div",
       { class: "charts" },
@@ -487,7 +491,8 @@ function writeLoadCases() {
     el(
       "p",
       {},
-      `The as-built net of ${design} under the temperatures, loads and support displacements of each load case.`,
+      `The table lists figures of the as-built net of ${design} in each load case. A load case consists of ` +
+        "temperatures, loads and support displacements.",
     ),
     sortableTable({ caption: "Load cases of the as-built net", columns, n: loadCases.length, by: -1 }).node,
   );

@@ -220,7 +220,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
       isOne && figure.isLead
         ? [{ name: "best point", at: axis.value(study.best), colour: "--alarm", dash: "2 3" }]
         : [],
-    caption: isOne ? "" : `One curve for each value of ${listed(others.map((a) => a.name))}.`,
+    caption: isOne ? "" : `The chart contains one curve for each value of ${listed(others.map((a) => a.name))}.`,
     head: (i) => headOf(axis, fmt(x[i], 6)),
   });
 }
@@ -233,7 +233,7 @@ function markChart(study, figure, axis, others, stage) {
     xLabel: axis.text,
     x: points.map(axis.value),
     counted: isWhole(points.map(axis.value)),
-    caption: "One mark for each completed point.",
+    caption: "The chart contains one mark for each completed point of the study.",
     head: (i) => pointName([axis, ...others], points[i]),
     series: [
       {
@@ -328,7 +328,7 @@ function drawFigures(study, figures, axis, others, stage, charts, note) {
     drawn = all.filter((f) => groups.length === 1 || isMap || changesAlong(f, groups, stage)),
     flat = all.filter((f) => !drawn.includes(f));
   note.textContent = flat.length
-    ? `Along ${axis.name} the following figures do not change: ${flat.map((f) => lowered(f.title)).join("; ")}.`
+    ? `The following figures do not depend on ${axis.name}: ${flat.map((f) => lowered(f.title)).join("; ")}.`
     : "";
   const drawings = drawn.map((f) =>
     groups.length <= CURVES_MAX
@@ -349,7 +349,8 @@ function whatMatters(figure, shares) {
   const parts = shares.map(({ axis, share }) => `${axis.name} ${part(share)}`),
     rest = 1 - shares.reduce((sum, { share }) => sum + share, 0);
   const both = rest > 0.005 ? `; the rest, ${part(rest)}, is their interaction` : "";
-  return `Of the variance of ${figure.title.replace(/^S/, "s")} over the points: ${parts.join(", ")}${both}.`;
+  const title = figure.title.replace(/^S/, "s");
+  return `The axes cause the following shares of the variance of ${title}: ${parts.join(", ")}${both}.`;
 }
 
 function writeCurves(study, axes, figures, mainStage) {
@@ -368,10 +369,10 @@ function writeCurves(study, axes, figures, mainStage) {
       .filter((a) => a.extend)
       .map((a) => {
         const end = headOf(a, a.label(study.best));
-        return `${lead.title} still decreases at ${end}, the end of the axis. Add points ${a.extend} this value.`;
+        return `${lead.title} still decreases at the end of the axis, ${end}. Add points ${a.extend} this value.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
-    ...psi.map(({ objective }) => `The objective ${objective} is not listed, because it equals ψ.`),
+    ...psi.map(({ objective }) => `The objective ${objective} is not listed separately, because it equals ψ.`),
     ...fixed.map((a) => `All completed points have ${headOf(a, a.only)}.`),
   ];
   const shares = lead
@@ -470,7 +471,8 @@ function writePoints(study, axes, figures, best) {
   if (fixed.length) notes.push(`All points have ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
   if (study.meets_yield.includes("open"))
     notes.push(
-      "Open: the required yield lies within the 95 % confidence interval of the samples. More samples are needed.",
+      "A point is open if the required yield lies within the 95 % confidence interval of the computed yield. " +
+        "More samples of an open point are needed.",
     );
   if (best >= 0) notes.push("The best point is marked. Click a heading to sort the table.");
   if (study.page.some((p) => p))

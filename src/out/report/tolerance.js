@@ -50,7 +50,9 @@ function toleranceChart(t) {
     x: t.histogram.map((_, i) => 1e3 * low + (i + 0.5) * width),
     counted: false,
     log: false,
-    caption: `Share of the samples with a shape in each ${n}th of the range.${far.length ? ` ${far.join("; ")}.` : ""}`,
+    caption:
+      `Each bar shows the share of the samples in one of ${n} intervals of ψ.` +
+      (far.length ? ` ${far.join("; ")}.` : ""),
     head: (i) => `ψ of ${edge(i)} to ${edge(i + 1)} mm`,
     series: [{ name: "samples", values: scaled(t.histogram, 100), colour: "--one", bars: width / 2 }],
     marks: marks.filter(({ isFar }) => !isFar),
@@ -61,24 +63,28 @@ function scaleText(t) {
   if (typeof t.sigma_scale !== "number") return "";
   if (!(t.sigma_scale > 0))
     return (
-      ` No tolerances give a yield of ${percent(t.required_yield)}, ` +
-      "because the net without errors fails a requirement."
+      ` A yield of ${percent(t.required_yield)} is impossible, ` +
+      "because the net fails a requirement even without errors."
     );
   const part = percent(t.sigma_scale, 4),
     required = percent(t.required_yield);
   if (t.scale_bound > 0)
-    return ` The yield is at least ${required} up to ${part} of these tolerances. Larger ones were not tried.`;
-  if (t.scale_bound < 0) return ` For a yield of ${required}, reduce all tolerances to less than ${part}.`;
-  if (t.sigma_scale < 1) return ` For a yield of ${required}, reduce all tolerances to ${part}.`;
-  return ` The yield is at least ${required} up to ${part} of these tolerances.`;
+    return (
+      ` The yield is at least ${required} if all tolerances are increased to ${part} of their values.` +
+      " Larger tolerances were not tried."
+    );
+  if (t.scale_bound < 0)
+    return ` To obtain a yield of ${required}, reduce all tolerances to less than ${part} of their values.`;
+  if (t.sigma_scale < 1) return ` To obtain a yield of ${required}, reduce all tolerances to ${part} of their values.`;
+  return ` The yield is at least ${required} if all tolerances are increased to ${part} of their values.`;
 }
 
 function toleranceText(t) {
   const failed = t.failed ? `, ${fmtCount(t.failed)} of them without a shape` : "";
   const yielded =
     typeof t.yield === "number"
-      ? ` Yield: ${percent(t.yield)} of them meet all requirements (95 % interval: ${fmt(100 * t.yield_low, 3)} to ` +
-        `${percent(t.yield_high)}).`
+      ? ` Yield: ${percent(t.yield)} of the samples meet all requirements (95 % interval: ` +
+        `${fmt(100 * t.yield_low, 3)} to ${percent(t.yield_high)}).`
       : "";
   const design = summary.front ? " of the form-finding" : "";
   return `${fmtCount(t.samples)} samples of the as-built net${design} were solved${failed}.${yielded}${scaleText(t)}`;
@@ -113,7 +119,7 @@ function writeTolerance() {
     el("div", { class: "charts" }, toleranceChart(t)),
     kinds.length ? el("h3", { class: "after" }, "Cables with the largest part of the error") : null,
     kinds.length
-      ? el("p", {}, `Shares of ψ² from all errors, to first order, are: ${kinds.join(", ")}.`)
+      ? el("p", {}, `To first order, the errors contribute the following shares of ψ²: ${kinds.join(", ")}.`)
       : null,
     shareTable(t),
   );
