@@ -10,7 +10,8 @@ import hifdm
 
 
 class Evolution:
-    """The best quarter of each generation become the parents of the next generation. Its spread follows theirs."""
+    """The best quarter of each generation is used as parents of the next generation. The spread of a generation follows
+    the spread of its parents."""
 
     def __init__(self, initial, lower, upper, n=64, seed=1):
         self.random = np.random.default_rng(seed)

@@ -1,4 +1,4 @@
-"""The package finds the shape and the pretension of cable nets for mesh reflectors. Arrays are numpy arrays.
+"""This package computes the shape and the pretension of cable nets for mesh reflectors. Arrays are numpy arrays.
 
     import hifdm, numpy as np
     case = hifdm.open("configs/chen2022.yaml")
@@ -6,8 +6,8 @@
     designs = case.initial + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_variable))
     out = case.evaluate(designs)  # out.psi_m, on all cores
 
-All values are in SI units, and the last part of a name is the unit. If a call fails, it raises HifdmError, which
-contains the message and the status.
+All values are in SI units. The last part of each name is the unit of its value. If a call of the library fails, the
+package raises HifdmError, which contains the error message and the status.
 """
 
 from ._library import HifdmError, version as __version__

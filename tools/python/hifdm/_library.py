@@ -45,7 +45,7 @@ PROTOTYPES = {
 
 
 class HifdmError(Exception):
-    """An error of the library. The text is the error message.
+    """An error of the library. The text of the exception is the error message.
 
     status: the reason as a word, such as "bad_case", "not_converged" or "no_memory".
     """
@@ -59,8 +59,8 @@ class HifdmError(Exception):
 
 
 def _candidates() -> list[str]:
-    """Returns the paths at which the library may be found. HIFDM_LIBRARY overrides them. The last path leaves the
-    search to the loader."""
+    """Returns the possible paths of the library. The environment variable HIFDM_LIBRARY overrides these paths. For the
+    last path, which has no folder, the dynamic loader searches for the library."""
     given = os.environ.get("HIFDM_LIBRARY")
     if given:
         return [given]
@@ -74,10 +74,11 @@ def _candidates() -> list[str]:
 
 @contextlib.contextmanager
 def _quiet_waiting() -> Iterator[None]:
-    """Makes the threads of OpenMP wait passively, unless the user has set a policy. The program hifdm does the same.
+    """Lets waiting threads of OpenMP sleep, unless the user has set a wait policy. The program hifdm uses the same
+    setting.
 
-    OpenMP reads the environment when it is loaded. By default, waiting threads spin for a millisecond. Calls with small
-    batches would then use three times as much processor time.
+    OpenMP reads the environment variables when it is loaded. By default, waiting threads of OpenMP spin for a
+    millisecond. With this default, evaluating small batches takes three times as much processor time.
     """
     ours = {} if {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"} & os.environ.keys() else _WAITING
     os.environ.update(ours)
@@ -93,10 +94,11 @@ _READ = "import ctypes, os, sys; ctypes.CDLL(sys.argv[1]).hf_flat_read(os.fsenco
 
 
 def _reader(library: str) -> ctypes.Array | None:
-    """Returns the command with which a run reads an existing output file, or None if this program is not Python.
+    """Returns the command that reads an existing output file in a new process. Returns None if no Python interpreter
+    is available.
 
-    By default a run reads the file in a copy of this process. h5py registers conversions in HDF5 that wait for the GIL.
-    In a copy they wait for ever if another thread held the GIL when the copy was made.
+    By default, a run reads an existing output file in a fork of this process. h5py registers HDF5 conversions that wait
+    for the GIL. If another thread holds the GIL during the fork, these conversions wait forever in the new process.
     """
     if not sys.executable or getattr(sys, "frozen", False):
         return None
@@ -144,7 +146,7 @@ def status_word(status: int) -> str:
 
 
 def word(of: str, code: int) -> str:
-    """Returns the word for a code. `of` names the list of words."""
+    """Returns the word that belongs to a code. `of` is the name of the list of words."""
     found = status_word(code) if of == "status" else lib.hf_flat_word(of.encode(), code)
     return "unknown" if found is None else found if isinstance(found, str) else found.decode()
 
@@ -164,15 +166,15 @@ _pointer_of = {np.dtype(np.float64): _reals, np.dtype(np.int32): _ints, np.dtype
 
 
 def pointer(array: np.ndarray | None):
-    """Returns a pointer to the data of an array. The caller must keep the array alive."""
+    """Returns a pointer to the data of an array. The caller must keep the array alive while the pointer is used."""
     return None if array is None else array.ctypes.data_as(_pointer_of[array.dtype])
 
 
 def wanted(name: str, array, dtype, shape: tuple) -> np.ndarray:
-    """Returns the array itself if it has this dtype and this shape, in C order. None in the shape means any length.
+    """Returns the array itself if it has the given dtype and shape, in C order. None in the shape allows any length.
 
-    Raises TypeError or ValueError otherwise. The message gives the name of the argument, its type and the required
-    type.
+    Otherwise, raises TypeError or ValueError. The error message gives the name of the argument, its type or shape, and
+    the required type and shape.
     """
     want = "(" + ", ".join("n" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
     want = f"a numpy array of dtype {np.dtype(dtype)} and shape {want} in C order"

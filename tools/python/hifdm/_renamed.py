@@ -1,4 +1,5 @@
-"""The names of version 0.2. Version 0.3 accepts them with a DeprecationWarning. Version 0.4 will reject them."""
+"""The old names of version 0.2. Version 0.3 accepts the old names with a DeprecationWarning. Version 0.4 will reject
+the old names."""
 
 from __future__ import annotations
 
@@ -29,19 +30,19 @@ KEYS = {  # of figures in a Shape, a Run or a result file
 
 
 def new_key(key: str) -> str | None:
-    """Returns the new name of a figure, a stage or an objective. Returns None if the name has not changed."""
+    """Returns the new name of a figure, a stage or an objective, or None if the name has not changed."""
     if key.startswith("goal_"):
         return "objective_" + key[len("goal_"):].replace("_displacement", "_deflection")
     return KEYS.get(key)
 
 
 def new_stage(stage: str) -> str:
-    """Returns the new name of a stage or a phase. The new name of a load case is "load_cases/NAME"."""
+    """Returns the new name of a stage or a phase. For a load case, the new name is "load_cases/NAME"."""
     return "load_" + stage if stage.startswith("cases/") else STAGES.get(stage, stage)
 
 
 def user_level() -> int:
-    """Returns the stacklevel with which a warning points to the line of the user, outside of this package."""
+    """Returns the stacklevel that makes a warning point to the line of the user's program that calls this package."""
     level = 2
     while level < 12 and sys._getframe(level).f_globals.get("__name__", "").startswith(("hifdm.", "collections.abc")):
         level += 1
@@ -54,7 +55,8 @@ def warn(old: str, new: str) -> None:
 
 
 def old_attribute(owner: Any, name: str) -> Any:
-    """Returns the attribute that had this name in version 0.2. Raises AttributeError if there is no such attribute."""
+    """Returns the attribute that had the given name in version 0.2. Raises AttributeError if there was no attribute
+    with this name."""
     kind = type(owner).__name__
     new = ATTRIBUTES[kind].get(name)
     if new is None:
@@ -64,7 +66,7 @@ def old_attribute(owner: Any, name: str) -> Any:
 
 
 class Figures(dict):
-    """Figures by name. Names of version 0.2 are accepted with a DeprecationWarning."""
+    """Figures by name. If a figure is requested by its name of version 0.2, a DeprecationWarning is issued."""
 
     def __missing__(self, key: str) -> Any:
         new = new_key(key) if isinstance(key, str) else None
@@ -75,8 +77,8 @@ class Figures(dict):
 
 
 class Stage(str):
-    """The name of a stage or a phase. A comparison with its name of version 0.2 is true and causes a
-    DeprecationWarning."""
+    """The name of a stage or a phase. The name is also equal to the name that the stage had in version 0.2, but such a
+    comparison causes a DeprecationWarning."""
 
     def __eq__(self, other: Any) -> bool:
         is_equal = str.__eq__(self, other)

@@ -1,4 +1,4 @@
-"""A case, its net and its shape. The case evaluates designs and executes complete runs."""
+"""Classes for a case, its shapes and its runs. A case can evaluate designs and execute complete runs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ class Progress(NamedTuple):
 
 
 class Shape:
-    """A shape. Each figure is an attribute, such as psi_m, residual_N or status. `figures` contains all of them."""
+    """A shape. Each figure of the shape is an attribute, such as psi_m, residual_N or status. The attribute `figures`
+    contains all figures."""
 
     position_m: np.ndarray  # [n_node, 3] m, supports included
     length_m: np.ndarray  # [n_cable] m
@@ -61,7 +62,8 @@ class Shape:
 
 
 class Designs:
-    """The results of n designs. Each column is available as an attribute and as an item, such as psi_m or merit."""
+    """The results of n designs. Each figure, such as psi_m or merit, is a column with one value for each design. A
+    column can be read as an attribute or as an item."""
 
     def __init__(self, names: list[str], n_objective: int, table: np.ndarray):
         self.names = names
@@ -69,7 +71,7 @@ class Designs:
         self.table = table  # [n_figure, n]; the status is a code
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Returns a column [n]. The value is NaN if a design does not have this figure."""
+        """Returns a column [n]. If a design does not have the figure of this column, the value is NaN."""
         new = new_key(name)
         if name not in self.names and new in self.names:
             warn(repr(name), repr(new))
@@ -94,23 +96,23 @@ class Designs:
 
     @property
     def feasible(self) -> np.ndarray:
-        """[n] bool: true for feasible designs."""
+        """[n] bool: True for feasible designs."""
         return self.table[0] == 0
 
     @property
     def best(self) -> int:
-        """Index of the feasible design with the minimum merit, or -1 if no design is feasible. A case with
-        optimize.front has no merit."""
+        """The index of the feasible design with the minimum merit, or -1 if no design is feasible. If the case has
+        optimize.front, the designs have no merit."""
         merit = np.where(self.feasible, self["merit"], np.inf)
         return int(merit.argmin()) if self.feasible.any() else -1
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Returns a dict of all columns, for example for pandas.DataFrame."""
+        """Returns a dict of all columns, which can be converted to a pandas.DataFrame."""
         return {name: self[name] for name in self.names}
 
 
 class Run(Mapping[str, Any]):
-    """A finished run. It is a mapping of the figures that `hifdm run --json` prints."""
+    """A finished run. A Run is a mapping that contains the figures of `hifdm run --json`."""
 
     def __init__(self, figures: dict[str, Any]):
         self.figures = Figures(figures)
@@ -118,7 +120,8 @@ class Run(Mapping[str, Any]):
         self.file: str | None = figures.get("file")  # the result file, if the run has written one
 
     def __getitem__(self, stage: str) -> Any:
-        """Returns the figures of a stage, such as "form" or "search", or of another part, such as "load_cases"."""
+        """Returns the figures of a stage, such as "form" or "search". Also returns the figures of another part of the
+        summary, such as "load_cases"."""
         try:
             return self.figures[stage]
         except KeyError:
@@ -162,8 +165,8 @@ def _plain(value: Any) -> Any:
 
 
 class _Lock:
-    """Allows only one thread at a time to use a case. A run holds the lock while it calls `progress`. Therefore
-    `progress` must not use the case."""
+    """Allows only one thread at a time to use a case. A run holds the lock of its case while it calls the function
+    `progress`. Therefore, the function `progress` must not use the case."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -180,7 +183,7 @@ class _Lock:
 
 
 class Case:
-    """A case, as returned by hifdm.open or hifdm.net. Only one thread at a time can use a case; other threads wait.
+    """A case, as returned by hifdm.open or hifdm.net. Only one thread at a time can use a case, and other threads wait.
     Indices start at 0."""
 
     def __init__(self, open_handle: Callable[[int], int], keep: Any = ()):
@@ -234,7 +237,7 @@ class Case:
         _process.update(pid=os.getpid())
 
     def _call(self, function: Callable, *arguments: Any) -> int:
-        """Calls the library and turns its warnings into Python warnings. Raises HifdmError if the call fails."""
+        """Calls the library and issues its warnings as Python warnings. Raises HifdmError if the call fails."""
         self._check_process()
         _process["is_used"] = True
         status = function(*arguments)
@@ -279,7 +282,7 @@ class Case:
     def form(self) -> Shape:
         """Finds the shape of the case.
 
-        Raises HifdmError if there is no shape, or if the iteration does not converge.
+        Raises HifdmError if the net has no shape, or if the iteration does not converge.
         """
         with self._lock:
             if self._shape is None:
@@ -288,8 +291,8 @@ class Case:
             return self._shape
 
     def shape(self, design: np.ndarray) -> Shape:
-        """Returns the shape of one design [n_variable]. An infeasible design does not raise an error. Check the
-        attribute `status` of the shape."""
+        """Returns the shape of one design [n_variable]. If the design is infeasible, no exception is raised, but the
+        attribute `status` of the shape gives the reason."""
         design = wanted("design", design, float, (self.n_variable,))
         with self._lock:
             self.form()
@@ -303,29 +306,29 @@ class Case:
 
     @property
     def initial(self) -> np.ndarray:
-        """[n_variable] The initial design. form() returns its shape. variable_units lists the units of the values."""
+        """[n_variable] The initial design. form() returns the shape of this design. variable_units lists the units."""
         return self._after_form("initial")
 
     @property
     def lower(self) -> np.ndarray:
-        """[n_variable] Lower bounds of the design variables. The value is -inf if a variable has no lower bound."""
+        """[n_variable] Lower bounds of the design variables. If a variable has no lower bound, the value is -inf."""
         return self._after_form("lower")
 
     @property
     def upper(self) -> np.ndarray:
-        """[n_variable] Upper bounds of the design variables. The value is inf if a variable has no upper bound."""
+        """[n_variable] Upper bounds of the design variables. If a variable has no upper bound, the value is inf."""
         return self._after_form("upper")
 
     @property
     def solver(self) -> str:
-        """The name of the solver that evaluates the designs."""
+        """The name of the solver that `evaluate` uses for the designs of this case."""
         with self._lock:
             self.form()
             return self._texts("solver")[0]
 
     def evaluate(self, designs: np.ndarray) -> Designs:
-        """Evaluates designs [n, n_variable] on all cores. variable_units lists the units of the columns. `hifdm
-        evaluate` gives the same results, bit for bit."""
+        """Evaluates designs [n, n_variable] on all cores. variable_units lists the units of the design variables. The
+        results are bit-identical to those of the command `hifdm evaluate`."""
         designs = wanted("designs", designs, float, (None, self.n_variable))
         table = np.empty((len(self.figure_names), len(designs)))
         with self._lock:
@@ -334,11 +337,12 @@ class Case:
         return Designs(self.figure_names, len(self._objectives), table)
 
     def jacobian(self, designs: np.ndarray) -> np.ndarray:
-        """Returns exact derivatives [n, n_slope, n_variable] at the designs [n, n_variable]. The derivatives of
-        infeasible designs are NaN.
+        """Returns exact derivatives [n, n_slope, n_variable] of figures at the designs [n, n_variable]. The derivatives
+        of infeasible designs are NaN.
 
-        slope_names lists the figures: psi_m, or each objective and the merit if the case has objectives. The unit of a
-        derivative is the unit of the figure divided by the unit of the design variable.
+        slope_names lists the figures that are differentiated. If the case has objectives, these figures are the
+        objectives and the merit. Otherwise, psi_m is the only figure. The unit of a derivative is the unit of the
+        figure divided by the unit of the design variable.
         """
         designs = wanted("designs", designs, float, (None, self.n_variable))
         slopes = np.empty((len(designs), len(self.slope_names), self.n_variable))
@@ -351,12 +355,16 @@ class Case:
 
     def run(self, output: str | os.PathLike | None = None, *, restart: bool = False,
             progress: Callable[[Progress], Any] | None = None) -> Run:
-        """Executes all stages of the case, as `hifdm run` does.
+        """Executes all stages of the case, as the command `hifdm run` does.
 
-        output: path of the result file, or None to write no file. If the file contains an interrupted run, that run is
-        resumed. restart: replaces such a file instead. progress: a function that is called during the run in a separate
-        thread. If it returns False, the run stops with the status "interrupted". If it raises an exception, the run
-        stops and raises the same exception. Ctrl-C stops the run as well. The function must not use this case.
+        output: path of the result file, or None to write no file. If the result file contains an interrupted run, this
+        run is resumed.
+
+        restart: if True, an interrupted run is not resumed, but replaced by a new run.
+
+        progress: a function that is called in a separate thread during the run. If `progress` returns False, the run
+        stops with the status "interrupted". If `progress` raises an exception, the run stops and raises the same
+        exception. Ctrl-C also stops the run. The function `progress` must not use this case.
         """
         path = None if output is None else c_text(os.fsencode(output))
         raised: list[BaseException] = []
@@ -395,8 +403,12 @@ class Case:
 
 
 def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> Case:
-    """Opens a case file. set: overrides, as {"form.pretension_N": 12} or ["form.pretension_N=12"]. threads: number of
-    threads; 0 uses all cores."""
+    """Opens a case file.
+
+    set: values that override keys of the case file, such as {"form.pretension_N": 12} or ["form.pretension_N=12"].
+
+    threads: number of threads, or 0 to use all cores.
+    """
     lines = _lines(set)
     given = os.fsencode(path)
     full = given if os.path.isabs(given) else os.path.join(os.getcwdb(), given)  # a run reads the file again
@@ -405,7 +417,7 @@ def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> C
 
 
 def _codes(name: str, words: str | Sequence[str] | np.ndarray, of: str, n: int) -> np.ndarray:
-    """Returns an array of n codes. The argument may be one word, n words, or an array of codes (uint8)."""
+    """Returns an array of n codes. The argument `words` may be one word, n words, or an array of n codes (uint8)."""
     if isinstance(words, np.ndarray) and words.dtype.kind != "U":
         return wanted(name, words, np.uint8, (n,))
     each = [words] * n if isinstance(words, str) else list(words)
@@ -426,7 +438,7 @@ def _ids(name: str, ids: Sequence[str] | None, n: int) -> ctypes.Array | None:
 
 
 def _members(name: str, cables: Sequence[int]) -> np.ndarray:
-    """Returns the indices of the cables of a set, in ascending order."""
+    """Returns the indices of the cables in a set, in ascending order."""
     given = np.asarray(cables)
     if given.ndim != 1 or given.size and given.dtype.kind not in "iu":
         raise TypeError(f"sets[{name!r}] has dtype {given.dtype} and {given.ndim} dimensions; "
@@ -438,7 +450,7 @@ def _members(name: str, cables: Sequence[int]) -> np.ndarray:
 
 
 def _sets(sets: Mapping[str, Sequence[int]]) -> tuple:
-    """Returns the sorted names of the sets, the index at which each set begins, and the indices of the cables."""
+    """Returns the sorted names of the sets, the index at which each set begins, and the cable indices of all sets."""
     names = sorted(sets, key=lambda name: name.encode())
     members = [_members(name, sets[name]) for name in names]
     start = np.cumsum([0] + [len(member) for member in members], dtype=np.int32)
@@ -451,18 +463,30 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
         node_ids: Sequence[str] | None = None, cable_ids: Sequence[str] | None = None,
         sets: Mapping[str, Sequence[int]] | None = None, set: Overrides = (), threads: int = 0,
         **sections: Any) -> Case:
-    """Creates a case from arrays. The arrays are not copied, so do not change them while the case exists.
+    """Creates a case from arrays. The arrays are not copied, so do not change the arrays while the case exists.
 
-    position_m: target positions of the nodes, and real positions of the supports [n_node, 3], m.
-    end: indices of the nodes at the ends of each cable [n_cable, 2], int32.
-    role: role of each node. A node is a "support", "inner" (included in psi) or "edge".
-    group: group of each cable, "inner" or "boundary". Without optimize.variables, boundary cables are design variables.
-    law: law of each cable, "tension", "length", "force_density" or "elastic".
-    role, group and law accept one word for all, a sequence of words, or codes (uint8).
-    value: target value of each cable, in N, m, N/m or m (unstressed length), as its law requires [n_cable].
-    NaN selects the pretension of the case, or the distance between the target positions.
-    EA_N: axial stiffness [n_cable], N. load_N: loads on the nodes [n_node, 3], N.
-    sets: names of sets, with the indices of their cables.
+    position_m: target positions of free nodes and real positions of supports [n_node, 3], m.
+
+    end: indices of the two end nodes of each cable [n_cable, 2], int32.
+
+    role: role of each node, which is "support", "inner" or "edge". Only the nodes with the role "inner" contribute to
+    psi. The arguments role, group and law accept one word for all, a sequence of words, or an array of codes (uint8).
+
+    group: group of each cable, which is "inner" or "boundary". Without optimize.variables, the pretensions of the
+    cables in the group "boundary" are the design variables.
+
+    law: law of each cable, which is "tension", "length", "force_density" or "elastic".
+
+    value: target value of the law of each cable [n_cable], in N (tension), m (length), N/m (force density) or m
+    (unstressed length). A target value of NaN selects the pretension of the case, or the distance between the target
+    positions of the end nodes.
+
+    EA_N: axial stiffness of each cable [n_cable], N.
+
+    load_N: loads on the nodes [n_node, 3], N.
+
+    sets: the indices of the cables of each set, by the name of the set.
+
     sections: sections of a case file, such as form={"pretension_N": 10}.
     """
     wanted("position_m", position_m, float, (None, 3))

@@ -1,4 +1,4 @@
-"""Plots with matplotlib. matplotlib is imported only when a plot is drawn."""
+"""Functions that plot results with matplotlib. The package matplotlib is imported only when one of them is called."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | None = None, ax=None):
-    """Draws the cables of a net and colours them by tension. Returns the axes.
+    """Plots the cables of a net. The colour of a cable shows its tension. Returns the axes.
 
     position_m: [n_node, 3] m, end: [n_cable, 2], tension_N: [n_cable] N
     """
@@ -27,7 +27,7 @@ def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | No
 
 
 def plot_generations(best_psi_m: np.ndarray, ax=None):
-    """Draws the best psi of each generation, in m. Returns the axes."""
+    """Plots the best psi of each generation. best_psi_m: [n_generation] m. Returns the axes."""
     import matplotlib.pyplot as plt
 
     ax = ax or plt.figure().add_subplot()

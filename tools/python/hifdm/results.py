@@ -1,7 +1,8 @@
-"""A thin layer over h5py for result files. `h5` is the open file. include/hifdm/store.h lists its contents.
+"""Reads result files with h5py. The attribute `h5` of a Result is the open file. include/hifdm/store.h describes the
+contents of a result file.
 
-Files of version 0.2 use other names (_renamed.py). Result reads these files as well and returns the figures under their
-new names."""
+Result files of version 0.2 use other names (_renamed.py). The class Result also reads files of version 0.2, and returns
+their figures under the new names."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ _OF_POPULATION = ("n_individual", "n_variable", "n_objective", "generations_limi
 
 
 class Result:
-    """An open result file. HDF5 is not thread-safe, so do not open a file while a run in the same process writes it."""
+    """An open result file. HDF5 is not thread-safe. Therefore, do not open a result file while a run in the same
+    process writes to this file."""
 
     def __init__(self, path: str | os.PathLike):
         import h5py  # imported here, because the rest of the package does not need it
@@ -39,7 +41,7 @@ class Result:
         self.h5.close()
 
     def _group(self, stage: str):
-        """Returns the group that contains the shape of a stage, or None."""
+        """Returns the HDF5 group that contains the shape of a stage, or None if the file has no shape of this stage."""
         for path in _GROUPS.get(stage) or [stage, stage.removeprefix("load_")]:
             if f"{path}/position_m" in self.h5:
                 return self.h5[path]
@@ -47,13 +49,13 @@ class Result:
 
     @property
     def stages(self) -> list[str]:
-        """The stages that have a shape: "form", "search", "refine", and load cases such as "load_cases/cold"."""
+        """The names of the stages that have a shape, such as "form", "search", "refine" or "load_cases/cold"."""
         load_cases = self.h5.get("load_cases", self.h5.get("cases", {}))
         names = [*_GROUPS, *(f"load_cases/{name}" for name in load_cases if name != "name")]
         return [Stage(name) for name in names if self._group(name)]
 
     def shape(self, stage: str = "form") -> Shape:
-        """Returns the shape of a stage. `stages` lists the stages of the file."""
+        """Returns the shape of a stage. The attribute `stages` lists the stages of the result file."""
         name = new_stage(stage)
         if name != stage:
             warn(repr(stage), repr(name))
@@ -64,7 +66,7 @@ class Result:
         return Shape(self._figures(group), {}, arrays)
 
     def _figures(self, group) -> Figures:
-        """Returns the attributes of a group under their new names. Codes are replaced by words."""
+        """Returns the attributes of an HDF5 group under their new names. Codes are replaced by words."""
         is_search_of_0_2 = group.name == "/ga/best"
         figures = Figures()
         for name, value in (self.h5["ga"] if is_search_of_0_2 else group).attrs.items():
