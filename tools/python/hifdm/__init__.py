@@ -1,13 +1,13 @@
-"""This package computes the shape and the pretension of cable nets for mesh reflectors. Arrays are numpy arrays.
+"""This package computes the shape and the pretension of cable nets for mesh reflectors.
+
+All arrays are numpy arrays. All values are in SI units. The last part of each name is the unit of its value. If a call
+fails, the package raises HifdmError, which contains the error message and the status. Example:
 
     import hifdm, numpy as np
     case = hifdm.open("configs/chen2022.yaml")
     shape = case.form()  # shape.psi_m, shape.position_m, shape.tension_N
     designs = case.initial + np.random.default_rng(1).uniform(-1, 1, (1000, case.n_variable))
     out = case.evaluate(designs)  # out.psi_m, on all cores
-
-All values are in SI units. The last part of each name is the unit of its value. If a call of the library fails, the
-package raises HifdmError, which contains the error message and the status.
 """
 
 from ._library import HifdmError, version as __version__

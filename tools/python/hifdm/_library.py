@@ -1,5 +1,5 @@
-"""Loads the shared library and its flat interface (include/hifdm/flat.h) with ctypes. ctypes releases the GIL during
-each call."""
+"""Loads the shared library and its flat interface (include/hifdm/flat.h) with ctypes. During each call, ctypes releases
+the GIL."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ PROTOTYPES = {
 class HifdmError(Exception):
     """An error of the library. The text of the exception is the error message.
 
-    status: the reason as a word, such as "bad_case", "not_converged" or "no_memory".
+    `status`: the reason as a word, such as "bad_case", "not_converged" or "no_memory".
     """
 
     def __init__(self, status: str, message: str):
@@ -74,8 +74,8 @@ def _candidates() -> list[str]:
 
 @contextlib.contextmanager
 def _quiet_waiting() -> Iterator[None]:
-    """Lets waiting threads of OpenMP sleep, unless the user has set a wait policy. The program hifdm uses the same
-    setting.
+    """Lets waiting threads of OpenMP sleep, unless the user has set a wait policy. The program `hifdm` does the
+    same.
 
     OpenMP reads the environment variables when it is loaded. By default, waiting threads of OpenMP spin for a
     millisecond. With this default, evaluating small batches takes three times as much processor time.
@@ -97,7 +97,7 @@ def _reader(library: str) -> ctypes.Array | None:
     """Returns the command that reads an existing output file in a new process. Returns None if no Python interpreter
     is available.
 
-    By default, a run reads an existing output file in a fork of this process. h5py registers HDF5 conversions that wait
+    By default, a run reads an existing output file in a fork of this process. However, HDF5 conversions of h5py wait
     for the GIL. If another thread holds the GIL during the fork, these conversions wait forever in the new process.
     """
     if not sys.executable or getattr(sys, "frozen", False):
@@ -146,7 +146,7 @@ def status_word(status: int) -> str:
 
 
 def word(of: str, code: int) -> str:
-    """Returns the word that belongs to a code. `of` is the name of the list of words."""
+    """Returns the word that belongs to a code. The argument `of` is the name of the list of words."""
     found = status_word(code) if of == "status" else lib.hf_flat_word(of.encode(), code)
     return "unknown" if found is None else found if isinstance(found, str) else found.decode()
 
@@ -171,7 +171,8 @@ def pointer(array: np.ndarray | None):
 
 
 def wanted(name: str, array, dtype, shape: tuple) -> np.ndarray:
-    """Returns the array itself if it has the given dtype and shape, in C order. None in the shape allows any length.
+    """Returns the array itself if it has the given dtype and shape, in C order. A length of None in `shape` allows any
+    length.
 
     Otherwise, raises TypeError or ValueError. The error message gives the name of the argument, its type or shape, and
     the required type and shape.

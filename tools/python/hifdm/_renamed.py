@@ -1,5 +1,5 @@
-"""The old names of version 0.2. Version 0.3 accepts the old names with a DeprecationWarning. Version 0.4 will reject
-the old names."""
+"""Translates the names of version 0.2 into new names. Version 0.3 accepts the old names with a DeprecationWarning.
+Version 0.4 will reject the old names."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def new_stage(stage: str) -> str:
 
 
 def user_level() -> int:
-    """Returns the stacklevel that makes a warning point to the line of the user's program that calls this package."""
+    """Returns the stacklevel that makes a warning refer to the line of the user's program that calls this package."""
     level = 2
     while level < 12 and sys._getframe(level).f_globals.get("__name__", "").startswith(("hifdm.", "collections.abc")):
         level += 1
@@ -77,8 +77,8 @@ class Figures(dict):
 
 
 class Stage(str):
-    """The name of a stage or a phase. The name is also equal to the name that the stage had in version 0.2, but such a
-    comparison causes a DeprecationWarning."""
+    """The name of a stage or a phase of a run. A comparison with the old name of this stage is also true, but causes a
+    DeprecationWarning."""
 
     def __eq__(self, other: Any) -> bool:
         is_equal = str.__eq__(self, other)

@@ -1,4 +1,4 @@
-"""Classes for a case, its shapes and its runs. A case can evaluate designs and execute complete runs."""
+"""Classes for cases, shapes, designs and runs. A case can evaluate designs and execute complete runs."""
 
 from __future__ import annotations
 
@@ -306,7 +306,7 @@ class Case:
 
     @property
     def initial(self) -> np.ndarray:
-        """[n_variable] The initial design. form() returns the shape of this design. variable_units lists the units."""
+        """[n_variable] The initial design. form() returns its shape. `variable_units` lists the units of its values."""
         return self._after_form("initial")
 
     @property
@@ -327,7 +327,7 @@ class Case:
             return self._texts("solver")[0]
 
     def evaluate(self, designs: np.ndarray) -> Designs:
-        """Evaluates designs [n, n_variable] on all cores. variable_units lists the units of the design variables. The
+        """Evaluates designs [n, n_variable] on all cores. `variable_units` lists the units of the design variables. The
         results are bit-identical to those of the command `hifdm evaluate`."""
         designs = wanted("designs", designs, float, (None, self.n_variable))
         table = np.empty((len(self.figure_names), len(designs)))
@@ -340,8 +340,8 @@ class Case:
         """Returns exact derivatives [n, n_slope, n_variable] of figures at the designs [n, n_variable]. The derivatives
         of infeasible designs are NaN.
 
-        slope_names lists the figures that are differentiated. If the case has objectives, these figures are the
-        objectives and the merit. Otherwise, psi_m is the only figure. The unit of a derivative is the unit of the
+        `slope_names` lists the figures that are differentiated. If the case has objectives, these figures are the
+        objectives and the merit. Otherwise, only psi_m is differentiated. The unit of a derivative is the unit of the
         figure divided by the unit of the design variable.
         """
         designs = wanted("designs", designs, float, (None, self.n_variable))
@@ -357,12 +357,12 @@ class Case:
             progress: Callable[[Progress], Any] | None = None) -> Run:
         """Executes all stages of the case, as the command `hifdm run` does.
 
-        output: path of the result file, or None to write no file. If the result file contains an interrupted run, this
-        run is resumed.
+        `output`: path of the result file, or None to write no file. If the result file contains an interrupted run,
+        this run is resumed.
 
-        restart: if True, an interrupted run is not resumed, but replaced by a new run.
+        `restart`: if True, an interrupted run is not resumed, but replaced by a new run.
 
-        progress: a function that is called in a separate thread during the run. If `progress` returns False, the run
+        `progress`: a function that is called in a separate thread during the run. If `progress` returns False, the run
         stops with the status "interrupted". If `progress` raises an exception, the run stops and raises the same
         exception. Ctrl-C also stops the run. The function `progress` must not use this case.
         """
@@ -405,9 +405,9 @@ class Case:
 def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> Case:
     """Opens a case file.
 
-    set: values that override keys of the case file, such as {"form.pretension_N": 12} or ["form.pretension_N=12"].
+    `set`: values that override keys of the case file, such as {"form.pretension_N": 12} or ["form.pretension_N=12"].
 
-    threads: number of threads, or 0 to use all cores.
+    `threads`: number of threads, or 0 to use all cores.
     """
     lines = _lines(set)
     given = os.fsencode(path)
@@ -465,29 +465,30 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
         **sections: Any) -> Case:
     """Creates a case from arrays. The arrays are not copied, so do not change the arrays while the case exists.
 
-    position_m: target positions of free nodes and real positions of supports [n_node, 3], m.
+    `position_m`: target positions of free nodes and real positions of supports [n_node, 3], m.
 
-    end: indices of the two end nodes of each cable [n_cable, 2], int32.
+    `end`: indices of the two end nodes of each cable [n_cable, 2], int32.
 
-    role: role of each node, which is "support", "inner" or "edge". Only the nodes with the role "inner" contribute to
-    psi. The arguments role, group and law accept one word for all, a sequence of words, or an array of codes (uint8).
+    `role`: role of each node, which is "support", "inner" or "edge". Only the nodes with the role "inner" contribute to
+    psi. The arguments `role`, `group` and `law` accept one word for all, a sequence of words, or an array of codes
+    (uint8).
 
-    group: group of each cable, which is "inner" or "boundary". Without optimize.variables, the pretensions of the
+    `group`: group of each cable, which is "inner" or "boundary". Without optimize.variables, the pretensions of the
     cables in the group "boundary" are the design variables.
 
-    law: law of each cable, which is "tension", "length", "force_density" or "elastic".
+    `law`: law of each cable, which is "tension", "length", "force_density" or "elastic".
 
-    value: target value of the law of each cable [n_cable], in N (tension), m (length), N/m (force density) or m
+    `value`: target value of the law of each cable [n_cable], in N (tension), m (length), N/m (force density) or m
     (unstressed length). A target value of NaN selects the pretension of the case, or the distance between the target
     positions of the end nodes.
 
-    EA_N: axial stiffness of each cable [n_cable], N.
+    `EA_N`: axial stiffness of each cable [n_cable], N.
 
-    load_N: loads on the nodes [n_node, 3], N.
+    `load_N`: loads on the nodes [n_node, 3], N.
 
-    sets: the indices of the cables of each set, by the name of the set.
+    `sets`: the indices of the cables of each set, by the name of the set.
 
-    sections: sections of a case file, such as form={"pretension_N": 10}.
+    `sections`: sections of a case file, such as form={"pretension_N": 10}.
     """
     wanted("position_m", position_m, float, (None, 3))
     wanted("end", end, np.int32, (None, 2))

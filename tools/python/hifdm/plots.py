@@ -1,4 +1,4 @@
-"""Functions that plot results with matplotlib. The package matplotlib is imported only when one of them is called."""
+"""Functions that plot results with matplotlib. The package matplotlib is imported only when a plot is made."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | None = None, ax=None):
     """Plots the cables of a net. The colour of a cable shows its tension. Returns the axes.
 
-    position_m: [n_node, 3] m, end: [n_cable, 2], tension_N: [n_cable] N
+    `position_m`: [n_node, 3] m, `end`: [n_cable, 2], `tension_N`: [n_cable] N
     """
     import matplotlib.pyplot as plt
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
@@ -27,7 +27,7 @@ def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | No
 
 
 def plot_generations(best_psi_m: np.ndarray, ax=None):
-    """Plots the best psi of each generation. best_psi_m: [n_generation] m. Returns the axes."""
+    """Plots the best psi of each generation. Returns the axes. `best_psi_m`: [n_generation] m"""
     import matplotlib.pyplot as plt
 
     ax = ax or plt.figure().add_subplot()

@@ -1,7 +1,7 @@
-"""Reads result files with h5py. The attribute `h5` of a Result is the open file. include/hifdm/store.h describes the
-contents of a result file.
+"""Reads result files with h5py. The attribute `h5` of a Result is the open file. The header include/hifdm/store.h
+describes the contents of a result file.
 
-Result files of version 0.2 use other names (_renamed.py). The class Result also reads files of version 0.2, and returns
+Result files of version 0.2 use old names (_renamed.py). The class Result also reads files of version 0.2, and returns
 their figures under the new names."""
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ class Result:
 
     @property
     def psi_m(self) -> np.ndarray:
-        """[generation, individual] psi in the search, m; NaN for infeasible individuals."""
+        """[generation, individual] psi in the search, m. The value is NaN for infeasible individuals."""
         return self._series("psi_m")
 
     @property
