@@ -173,7 +173,7 @@ export async function checkFront(tab, made) {
   await tab.keyboard.press("Escape");
   assert.match(await tab.locator("#front code").textContent(), /^hifdm run .* --point .*\.h5:\d -o point\d\.h5$/);
   const whose = tab.locator("#answer + #whose:has(+ .figures)"); // before the first figure that is of no point
-  assert.match(await whose.textContent(), /^Except for the front, this page shows the shape of the form-finding, /);
+  assert.match(await whose.textContent(), /^This page shows the shape after form-finding, which is not a point /);
   assert.equal(await whose.locator("code").textContent(), await tab.locator("#front code").textContent());
   const row = tab.locator("#summary tr", { hasText: psi });
   same(number(await row.locator(".number").first().textContent()), 1e3 * initial[psi], 5);
