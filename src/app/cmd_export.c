@@ -1,41 +1,40 @@
 /* `hifdm export` writes a result in the formats of the table of exporters (out/export.h). */
-#include "app/cmd.h"
-
 #include "app/options.h"
-#include "out/print.h"
 
+#include "base/text.h"
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 /* Writes the list of options, "--csv DIR, --vtk DIR or --cutlist FILE", into text. */
 static void list_exporters(char *text, size_t size)
 {
-    size_t used = 0;
+    char item[64];
     *text = '\0';
-    for (int i = 0; i < HF_N_EXPORTER && used < size; i++) {
-        const hf_exporter *e = hf_exporter_table[i];
-        const char *gap = i == 0 ? "" : i == HF_N_EXPORTER - 1 ? " or " : ", ";
-        used += (size_t)snprintf(text + used, size - used, "%s%s %s", gap, e->option, e->argument);
+    for (int i = 0; i < HF_N_EXPORTER; i++) {
+        snprintf(item, sizeof item, "%s %s", hf_exporter_table[i]->option, hf_exporter_table[i]->argument);
+        hf_text_append(text, size, i == HF_N_EXPORTER - 1 ? " or " : ", ", item, "");
     }
 }
 
-/* Checks that at least one format is requested, and that --stage and --load-case suit the formats. Returns HF_OK or
- * HF_BAD_USAGE. */
-static hf_status check_request(const hf_options *o, hf_messages *messages)
+/* Checks that at least one format is requested, and that --stage and --load-case suit the formats. Finds how much of
+ * the result the formats read, and whether one of them writes one shape. Returns HF_OK or HF_BAD_USAGE. */
+static hf_status check_request(const hf_options *o, hf_export_extent *extent, bool *has_one_shape,
+                               hf_messages *messages)
 {
     char list[512];
     const hf_exporter *every_shape = NULL;
-    int n_asked = 0, n_one_shape = 0;
+    *extent = HF_EXPORT_SUMMARY;
+    *has_one_shape = false;
     for (int i = 0; i < HF_N_EXPORTER; i++) {
+        const hf_exporter *e = hf_exporter_table[i];
         if (!o->export_to[i]) continue;
-        n_asked++;
-        if (hf_exporter_table[i]->takes_stage)
-            n_one_shape++;
-        else
-            every_shape = hf_exporter_table[i];
+        if (e->reads > *extent) *extent = e->reads;
+        *has_one_shape |= e->takes_stage;
+        if (!e->takes_stage) every_shape = e;
     }
     list_exporters(list, sizeof list);
-    if (n_asked == 0) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
+    if (!*has_one_shape && !every_shape) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
     if (o->stage && o->load_case) return hf_error(messages, HF_BAD_USAGE, "--stage and --load-case cannot be combined");
     for (int i = 0; i < HF_N_EXPORTER; i++)
         if (o->load_case && o->export_to[i] && !hf_exporter_table[i]->takes_case)
@@ -43,7 +42,7 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
                             hf_exporter_table[i]->option,
                             hf_exporter_table[i]->takes_stage ? "which is of the design that all load cases are made of"
                                                               : "which writes every shape");
-    if (o->stage && n_one_shape == 0)
+    if (o->stage && !*has_one_shape)
         return hf_error(messages, HF_BAD_USAGE, "--stage cannot be combined with %s alone, which writes every shape",
                         every_shape->option);
     return HF_OK;
@@ -51,31 +50,35 @@ static hf_status check_request(const hf_options *o, hf_messages *messages)
 
 static hf_status command_export(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    static char said[HF_N_EXPORTER][HF_EXPORT_SAID_SIZE];
     static hf_export_stored stored;
     static hf_file_out_set files;
-    HF_TRY(check_request(o, messages));
-    hf_export_request request = {
-        .file = o->file, .stage = o->stage, .load_case = o->load_case, .force = o->force, .files = &files};
-    hf_export_extent extent = HF_EXPORT_SUMMARY;
-    bool is_new[HF_N_EXPORTER], has_one_shape = false;
-    for (int i = 0; i < HF_N_EXPORTER; i++) {
+    char *said = NULL;
+    size_t size;
+    hf_export_extent extent;
+    bool is_new[HF_N_EXPORTER], has_one_shape;
+    HF_TRY(check_request(o, &extent, &has_one_shape, messages));
+    hf_export_request request = {.file = o->file,
+                                 .stage = o->stage,
+                                 .load_case = o->load_case,
+                                 .force = o->force,
+                                 .files = &files,
+                                 .said = open_memstream(&said, &size)};
+    if (!request.said) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    for (int i = 0; i < HF_N_EXPORTER; i++)
         is_new[i] = o->export_to[i] && access(o->export_to[i], F_OK) != 0;
-        has_one_shape |= o->export_to[i] && hf_exporter_table[i]->takes_stage;
-        if (o->export_to[i] && hf_exporter_table[i]->reads > extent) extent = hf_exporter_table[i]->reads;
-    }
     hf_status status = hf_export_read(&request, extent, &stored, messages);
     for (int i = 0; i < HF_N_EXPORTER && status == HF_OK; i++) {
         const hf_exporter *e = hf_exporter_table[i];
         request.output = o->export_to[i];
         request.is_folder = !strcmp(e->argument, "DIR");
-        if (request.output) status = e->write(&request, &stored, said[i], sizeof said[i], messages);
+        if (request.output) status = e->write(&request, &stored, messages);
     }
     status = hf_file_out_set_end(&files, status, messages);
-    for (int i = 0; i < HF_N_EXPORTER; i++) {
-        if (status == HF_OK && o->export_to[i]) hf_print_line(file, "%s", said[i]);
-        if (status != HF_OK && is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files that failed */
-    }
+    fclose(request.said);
+    if (status == HF_OK) fputs(said, file);
+    free(said);
+    for (int i = 0; i < HF_N_EXPORTER && status != HF_OK; i++)
+        if (is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files that failed */
     /* A format that writes every shape also writes their names. */
     if (status == HF_OK && has_one_shape && !o->stage)
         hf_export_warn_of_front(o->file, &stored.summary, o->load_case, messages);

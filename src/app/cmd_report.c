@@ -1,17 +1,12 @@
 /* `hifdm report` shows a result, two of them side by side, or a merged study as one HTML page. */
-#include "app/cmd.h"
-
 #include "app/options.h"
-#include "out/print.h"
+
 #include "out/report.h"
 
 static hf_status command_report(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    const hf_export_request request = {.file = o->file, .output = o->output, .force = o->force};
-    static char said[HF_EXPORT_SAID_SIZE];
-    HF_TRY(hf_report(&request, o->second, said, sizeof said, messages));
-    hf_print_line(file, "%s", said);
-    return HF_OK;
+    const hf_export_request request = {.file = o->file, .output = o->output, .force = o->force, .said = file};
+    return hf_report(&request, o->second, messages);
 }
 
 const hf_command hf_cmd_report = {

@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/file_out.h"
 #include "base/path.h"
+#include "base/text.h"
 
 #include <errno.h>
 #include <string.h>
@@ -59,10 +60,9 @@ static hf_status find_load_case(const hf_export_request *o, hf_export_stored *st
 {
     const hf_summary *s = &stored->summary;
     char known[512] = "";
-    int k = 0, used = 0;
+    int k = 0;
     for (; k < s->n_load_case && strcmp(o->load_case, s->load_case[k].name) != 0; k++)
-        if (used < (int)sizeof known)
-            used += snprintf(known + used, sizeof known - (size_t)used, "%s%s", k ? ", " : "", s->load_case[k].name);
+        hf_text_append(known, sizeof known, ", ", s->load_case[k].name, "");
     if (s->n_load_case == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this run has no load cases", o->file);
     if (k == s->n_load_case)
         return hf_error(messages, HF_BAD_USAGE, "%s: has no load case '%s'; it has %s", o->file, o->load_case, known);
@@ -85,6 +85,9 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_extent extent, hf
         return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage %s", o->file, stored->word,
                         hf_stage_word[result]);
     if (extent >= HF_EXPORT_SCENE) HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
+    if (extent >= HF_EXPORT_SCENE && summary->surface.focal_length_m > 0 &&
+        hf_facets_find(&stored->scene, &summary->surface, &stored->facets) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for its facets", o->file);
     if (extent < HF_EXPORT_SHAPE) return HF_OK;
     return o->load_case ? hf_store_read_load_case(o->file, o->load_case, &stored->shape, messages)
                         : hf_store_read_shape(o->file, stored->stage, &stored->shape, messages);
@@ -123,6 +126,7 @@ void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load
 void hf_export_free(hf_export_stored *stored)
 {
     hf_shape_free(&stored->shape);
+    hf_facets_free(&stored->facets);
     hf_scene_free(&stored->scene);
     hf_summary_free(&stored->summary);
 }

@@ -5,13 +5,11 @@
 #pragma once
 
 #include "base/file_out.h"
+#include <hifdm/facets.h>
 #include <hifdm/store.h>
 
 #include <limits.h>
 #include <stdbool.h>
-
-/* Size of the line that reports what an exporter wrote: text and at most five paths. */
-#define HF_EXPORT_SAID_SIZE (5 * PATH_MAX + 256)
 
 /* Describes what to export, and to where. */
 typedef struct {
@@ -22,6 +20,7 @@ typedef struct {
     const char *load_case;  /* name of a load case of the as-built net; NULL: a stage */
     bool force;             /* replace existing files */
     hf_file_out_set *files; /* collects the files; the caller renames them all at once */
+    FILE *said;             /* receives one line for each exporter, which reports what was written */
 } hf_export_request;
 
 /* What an exporter reads of a result; each value includes those before it. */
@@ -32,6 +31,7 @@ typedef struct {
     hf_summary summary;
     hf_stage stage; /* that of request->stage or, without it, the stage that is the result */
     hf_scene scene;
+    hf_facets facets; /* with the scene; none when the case does not measure the surface */
     hf_shape shape;   /* of this stage, or of the load case */
     const char *word; /* name of the shape in messages */
 } hf_export_stored;
@@ -44,10 +44,9 @@ typedef struct {
     bool takes_stage; /* true: writes one shape, chosen by --stage; false: writes every shape of the run */
     bool takes_case;  /* true: --load-case may also choose a load case of the as-built net */
     /* Writes the export of what was read. It checks all names before it writes anything, and keeps existing files
-     * unless request->force is set. said [size] receives one line that reports what was written. Returns HF_OK;
-     * HF_EXISTS, HF_IO, HF_NO_MEMORY, HF_BAD_CASE or HF_BAD_USAGE with a message. */
-    hf_status (*write)(const hf_export_request *request, const hf_export_stored *stored, char *said, size_t size,
-                       hf_messages *messages);
+     * unless request->force is set. Returns HF_OK; HF_EXISTS, HF_IO, HF_NO_MEMORY, HF_BAD_CASE or HF_BAD_USAGE with a
+     * message. */
+    hf_status (*write)(const hf_export_request *request, const hf_export_stored *stored, hf_messages *messages);
 } hf_exporter;
 
 /* Lists the exporters in the order of the help. A command with several of their options writes them in this order. */

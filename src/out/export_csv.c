@@ -10,14 +10,13 @@
 #include "out/export.h"
 
 #include "base/csv.h"
-#include <hifdm/facets.h>
-
+#include "out/print.h"
 #include <math.h>
 
 typedef struct {
     const hf_scene *scene;
     const hf_shape *shape;
-    hf_facets facets;
+    const hf_facets *facets;
     hf_truss truss;
     hf_carrier_state state; /* of the truss */
 } view;
@@ -53,8 +52,8 @@ static void write_facets(const void *context, FILE *f)
 {
     const view *v = context;
     fputs("id,a,b,c,d\n", f);
-    for (int i = 0; i < v->facets.n_facet; i++) {
-        const int *corner = v->facets.corner + 4 * (size_t)i;
+    for (int i = 0; i < v->facets->n_facet; i++) {
+        const int *corner = v->facets->corner + 4 * (size_t)i;
         fprintf(f, "f%d", i + 1);
         for (int k = 0; k < 4; k++) {
             fputc(',', f);
@@ -119,37 +118,26 @@ static void write_members(const void *context, FILE *f)
     }
 }
 
-/* Finds the facets, and reads the truss if has_truss. */
-static hf_status complete(const hf_export_request *o, const hf_export_stored *stored, bool has_truss, view *v,
-                          hf_messages *messages)
-{
-    hf_status status = HF_OK;
-    if (stored->summary.surface.focal_length_m > 0)
-        status = hf_facets_find(v->scene, &stored->summary.surface, &v->facets);
-    if (status != HF_OK) return hf_error(messages, status, "%s: out of memory", o->file);
-    return has_truss ? hf_export_read_truss(o->file, o->load_case, &v->truss, &v->state, messages) : HF_OK;
-}
-
-static hf_status export_csv(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                            hf_messages *messages)
+static hf_status export_csv(const hf_export_request *o, const hf_export_stored *stored, hf_messages *messages)
 {
     static hf_export_file file[] = {{"nodes.csv", write_nodes, ""},
                                     {"cables.csv", write_cables, ""},
                                     {"facets.csv", write_facets, ""},
                                     {"truss_nodes.csv", write_truss_nodes, ""},
                                     {"members.csv", write_members, ""}};
-    view v = {.scene = &stored->scene, .shape = &stored->shape};
+    view v = {.scene = &stored->scene, .shape = &stored->shape, .facets = &stored->facets};
     bool has_truss = hf_export_has_truss(o, &stored->summary, messages);
-    hf_status status = complete(o, stored, has_truss, &v, messages);
+    hf_status status = HF_OK;
+    if (has_truss) status = hf_export_read_truss(o->file, o->load_case, &v.truss, &v.state, messages);
     file[2].write = stored->summary.surface.focal_length_m > 0 ? write_facets : NULL;
     if (status == HF_OK) status = hf_export_files(o, file, has_truss ? 5 : 3, &v, messages);
-    int used = snprintf(said, size, "%s: %d nodes and %d cables of the %s shape in %s/nodes.csv and %s/cables.csv",
-                        o->file, v.scene->n_node, v.scene->n_cable, stored->word, o->output, o->output);
-    if (has_truss && (size_t)used < size)
-        snprintf(said + used, size - (size_t)used,
+    char of_truss[2 * PATH_MAX + 128] = "";
+    if (has_truss)
+        snprintf(of_truss, sizeof of_truss,
                  "; %d nodes and %d members of the truss in %s/truss_nodes.csv and %s/members.csv", v.truss.n_node,
                  v.truss.n_member, o->output, o->output);
-    hf_facets_free(&v.facets);
+    hf_print_line(o->said, "%s: %d nodes and %d cables of the %s shape in %s/nodes.csv and %s/cables.csv%s", o->file,
+                  v.scene->n_node, v.scene->n_cable, stored->word, o->output, o->output, of_truss);
     hf_truss_free(&v.truss);
     hf_carrier_state_free(&v.state);
     return status;

@@ -27,8 +27,8 @@
 #include "base/csv.h"
 #include "net/cable_pick.h"
 #include "out/cut.h"
+#include "out/print.h"
 #include <hifdm/cable_set.h>
-#include <hifdm/metrics.h>
 
 #include <math.h>
 #include <string.h>
@@ -130,8 +130,7 @@ static void write_totals(const void *context, FILE *f)
         write_total(v, v->scene->set_name[k], OF_SET, k, f);
 }
 
-static hf_status export_cutlist(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                                hf_messages *messages)
+static hf_status export_cutlist(const hf_export_request *o, const hf_export_stored *stored, hf_messages *messages)
 {
     static hf_export_file file[] = {
         {"", write_cables, ""}, {"_mm", write_bench, ""}, {"_nodes", write_nodes, ""}, {"_totals", write_totals, ""}};
@@ -139,8 +138,8 @@ static hf_status export_cutlist(const hf_export_request *o, const hf_export_stor
     const view v = {scene, &stored->shape, hf_model_reference_N(scene, stored->summary.pretension_N)};
     HF_TRY(hf_cable_demand_EA(scene, o->file, "cutting lengths need", ", and run again", messages));
     HF_TRY(hf_export_files(o, file, 4, &v, messages));
-    snprintf(
-        said, size,
+    hf_print_line(
+        o->said,
         "%s: cutting lengths of %d cables of the %s shape in %s, in mm for the bench in %s, node positions for the jig "
         "in %s, totals in %s",
         o->file, scene->n_cable, stored->word, file[0].path, file[1].path, file[2].path, file[3].path);

@@ -9,6 +9,7 @@
 #include "out/export.h"
 
 #include "base/csv.h"
+#include "out/print.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -58,8 +59,7 @@ static void write_front(const void *context, FILE *f)
     }
 }
 
-static hf_status export_front(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                              hf_messages *messages)
+static hf_status export_front(const hf_export_request *o, const hf_export_stored *stored, hf_messages *messages)
 {
     view v = {.summary = &stored->summary};
     static hf_export_file file = {"", write_front, ""};
@@ -68,8 +68,8 @@ static hf_status export_front(const hf_export_request *o, const hf_export_stored
                         o->file);
     hf_status status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
     if (status == HF_OK) status = hf_export_files(o, &file, 1, &v, messages);
-    snprintf(said, size, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
-             v.front.n_objective, o->output);
+    hf_print_line(o->said, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
+                  v.front.n_objective, o->output);
     hf_front_free(&v.front);
     free(v.variable);
     return status;

@@ -5,6 +5,7 @@
  * Numbers have 17 significant digits. */
 #include "out/export.h"
 
+#include "out/print.h"
 #include "surface/facet_mesh.h"
 
 static void write_pattern(const void *context, FILE *f)
@@ -32,8 +33,7 @@ static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, h
                     file);
 }
 
-static hf_status export_pattern(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                                hf_messages *messages)
+static hf_status export_pattern(const hf_export_request *o, const hf_export_stored *stored, hf_messages *messages)
 {
     hf_pattern_table table;
     static hf_export_file file = {"", write_pattern, ""};
@@ -41,8 +41,9 @@ static hf_status export_pattern(const hf_export_request *o, const hf_export_stor
         return refuse(o->file, &stored->summary, stored->stage, messages);
     HF_TRY(hf_store_read_pattern(o->file, stored->stage, &table, messages));
     hf_status status = hf_export_files(o, &file, 1, &table, messages);
-    snprintf(said, size, "%s: far field at %d frequenc%s in %d cut%s of %d angles in %s", o->file, table.n_frequency,
-             table.n_frequency == 1 ? "y" : "ies", table.n_cut, table.n_cut == 1 ? "" : "s", table.n_theta, o->output);
+    hf_print_line(o->said, "%s: far field at %d frequenc%s in %d cut%s of %d angles in %s", o->file, table.n_frequency,
+                  table.n_frequency == 1 ? "y" : "ies", table.n_cut, table.n_cut == 1 ? "" : "s", table.n_theta,
+                  o->output);
     hf_pattern_table_free(&table);
     return status;
 }

@@ -18,6 +18,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "net/target_surface.h"
+#include "out/print.h"
 #include "surface/facet_mesh.h"
 
 #include <math.h>
@@ -26,7 +27,6 @@ enum { GRID = 301, POINTS_LEAST = 3, POINTS_MOST = 16 };
 
 typedef struct {
     const hf_export_stored *stored;
-    hf_facets facets;
     double *sag_m;          /* [n_facet][4] sags of the sides; NULL: flat facets */
     double *z_m;            /* [n_y][n_x] of the grid */
     double low[2], high[2]; /* corners of the grid */
@@ -38,7 +38,7 @@ typedef struct {
 /* Takes the mesh of facet i from the shape. */
 static void take(const view *v, int i, hf_facet_mesh *m)
 {
-    hf_facet_mesh_take_bent(&v->facets, i, v->stored->shape.position_m, v->sag_m, m);
+    hf_facet_mesh_take_bent(&v->stored->facets, i, v->stored->shape.position_m, v->sag_m, m);
 }
 
 /* Computes the sags of the pillows, if the mesh has a tension. Returns HF_BAD_USAGE when the cables cannot hold it. */
@@ -49,7 +49,7 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
     char words[64];
     double pull_ratio, mesh_N_per_m = s->summary.surface.mesh_tension_N_per_m, *sag_m;
     if (!(mesh_N_per_m > 0)) return HF_OK;
-    hf_status status = hf_facet_mesh_make_sags(mesh_N_per_m, &v->facets, &shape, arena, &sag_m, &pull_ratio);
+    hf_status status = hf_facet_mesh_make_sags(mesh_N_per_m, &v->stored->facets, &shape, arena, &sag_m, &pull_ratio);
     if (status != HF_OK) return hf_error(messages, status, "%s: out of memory for its facets", file);
     v->sag_m = sag_m;
     if (pull_ratio <= HF_FACET_PULL_MOST) return HF_OK;
@@ -66,8 +66,8 @@ static void measure(view *v)
     double longest_m = 0, most_Hz = hf_surface_highest_Hz(&v->stored->summary.surface);
     v->low[0] = v->low[1] = INFINITY;
     v->high[0] = v->high[1] = -INFINITY;
-    for (int i = 0; i < 4 * v->facets.n_facet; i++) {
-        const int *corner = v->facets.corner + i / 4 * 4;
+    for (int i = 0; i < 4 * v->stored->facets.n_facet; i++) {
+        const int *corner = v->stored->facets.corner + i / 4 * 4;
         const double *p = v->stored->shape.position_m + 3 * (size_t)corner[i % 4];
         longest_m = fmax(longest_m, hf_distance(p, v->stored->shape.position_m + 3 * (size_t)corner[(i + 1) % 4]));
         for (int d = 0; d < 2; d++) {
@@ -144,7 +144,7 @@ static void fill_grid(view *v)
         const double p[3] = {place_of(v, 0, k % v->n[0]), place_of(v, 1, k / v->n[0]), 0};
         v->z_m[k] = -hf_target_surface_height_above(s->kind, 1 / (4 * s->focal_length_m), p, slope);
     }
-    for (int i = 0; i < v->facets.n_facet; i++)
+    for (int i = 0; i < v->stored->facets.n_facet; i++)
         put_facet(v, i);
 }
 
@@ -169,7 +169,7 @@ static void write_points(const void *context, FILE *f)
             "# frame of the scene: vertex of the target surface at 0, its axis +z\n"
             "x,y,z,nx,ny,nz,dA\n",
             v->stored->word, v->n_side * v->n_side);
-    for (int i = 0; i < v->facets.n_facet; i++) {
+    for (int i = 0; i < v->stored->facets.n_facet; i++) {
         hf_facet_mesh m;
         take(v, i, &m);
         for (int k = 0; k < v->n_side * v->n_side; k++) {
@@ -208,7 +208,7 @@ static void write_triangles(const void *context, FILE *f)
 {
     const view *v = context;
     fputs("solid facets in m, frame of the scene\n", f);
-    for (int i = 0; i < v->facets.n_facet; i++) {
+    for (int i = 0; i < v->stored->facets.n_facet; i++) {
         hf_facet_mesh m;
         take(v, i, &m);
         write_triangle((const double *const[]){m.corner[0], m.corner[1], m.corner[2]}, f);
@@ -237,26 +237,21 @@ static hf_status write_files(const hf_export_request *o, view *v, hf_messages *m
     return status;
 }
 
-static hf_status export_rf(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                           hf_messages *messages)
+static hf_status export_rf(const hf_export_request *o, const hf_export_stored *stored, hf_messages *messages)
 {
     view v = {.stored = stored};
-    const hf_surface_settings *surface = &stored->summary.surface;
-    if (!(surface->focal_length_m > 0))
+    if (!(stored->summary.surface.focal_length_m > 0))
         return hf_error(messages, HF_BAD_USAGE,
                         "%s: its case has no section surface, so its facets have no target surface", o->file);
-    hf_status status = hf_facets_find(&stored->scene, surface, &v.facets);
-    if (status != HF_OK) hf_error(messages, status, "%s: out of memory for its facets", o->file);
-    if (status == HF_OK && v.facets.n_facet == 0)
-        status = hf_error(messages, HF_BAD_USAGE, "%s: this net has no facets", o->file);
-    if (status == HF_OK) status = write_files(o, &v, messages);
-    snprintf(said, size,
-             "%s: %d facets of the %s shape: grid of %d x %d in %s/surface.grd, %d points in %s/points.csv, triangles "
-             "in %s/facets.stl",
-             o->file, v.facets.n_facet, stored->word, v.n[0], v.n[1], o->output, v.facets.n_facet * v.n_side * v.n_side,
-             o->output, o->output);
-    hf_facets_free(&v.facets);
-    return status;
+    if (stored->facets.n_facet == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this net has no facets", o->file);
+    HF_TRY(write_files(o, &v, messages));
+    hf_print_line(
+        o->said,
+        "%s: %d facets of the %s shape: grid of %d x %d in %s/surface.grd, %d points in %s/points.csv, triangles "
+        "in %s/facets.stl",
+        o->file, stored->facets.n_facet, stored->word, v.n[0], v.n[1], o->output,
+        stored->facets.n_facet * v.n_side * v.n_side, o->output, o->output);
+    return HF_OK;
 }
 
 const hf_exporter hf_exporter_rf = {

@@ -26,8 +26,9 @@
 #include "out/export.h"
 
 #include "base/arena.h"
-#include "base/file_out.h"
+#include "base/text.h"
 #include "net/target_surface.h"
+#include "out/print.h"
 #include "surface/facet_mesh.h"
 #include "store/vtkhdf.h"
 #include <hifdm/metrics.h>
@@ -37,6 +38,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define FIELDS_MAX 12 /* maximum number of point or cell fields of a file; add() asserts it */
@@ -62,7 +64,6 @@ typedef struct {
     const int *corner;         /* [offset[n_cell]] points of the cells, one cell after the other */
     const int *offset;         /* [n_cell + 1] first point of each cell in `corner` */
     const unsigned char *type; /* [n_cell] type of each cell */
-    int *number;               /* [max(n_point, n_cell)] scratch */
     fields point, cell;
 } grid;
 
@@ -77,20 +78,22 @@ static void add(fields *list, const char *name, const char *units, const hf_hdf5
 
 /* ---- its file ---- */
 
-static void put(hf_hdf5 *io, hid_t group, const grid *g, const field *f, int n)
+static void put(hf_hdf5 *io, hid_t group, const field *f, int n)
 {
     const hf_hdf5_kind *kind = f->kind ? f->kind : HF_KIND_INT;
     hf_hdf5_array array = {f->name, kind, f->columns > 1 ? 2 : 1, {(hsize_t)n, (hsize_t)f->columns}, f->units, ""};
-    for (int i = 0; i < n && !f->kind; i++)
-        g->number[i] = ((const unsigned char *)f->values)[i];
-    hf_hdf5_write_array(io, group, &array, f->kind ? f->values : g->number);
+    int *number = f->kind ? NULL : hf_hdf5_take(io, (size_t)n, sizeof *number);
+    for (int i = 0; i < n && number; i++)
+        number[i] = ((const unsigned char *)f->values)[i];
+    hf_hdf5_write_array(io, group, &array, number ? number : f->values);
+    free(number);
 }
 
-static void put_fields(hf_hdf5 *io, const char *path, const grid *g, const fields *list, int n)
+static void put_fields(hf_hdf5 *io, const char *path, const fields *list, int n)
 {
     hid_t group = hf_hdf5_make_group(io, path);
     for (int i = 0; i < list->n; i++)
-        put(io, group, g, &list->of[i], n);
+        put(io, group, &list->of[i], n);
     hf_hdf5_close(io, group);
 }
 
@@ -98,10 +101,10 @@ static void put_grid(hf_hdf5 *io, const grid *g)
 {
     hf_vtkhdf_put_cells(io, &(hf_vtkhdf_cells){g->n_point, g->n_cell, g->corner, g->offset, g->type});
     hid_t group = hf_hdf5_open_group(io, "/VTKHDF");
-    put(io, group, g, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
+    put(io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
     hf_hdf5_close(io, group);
-    put_fields(io, "/VTKHDF/PointData", g, &g->point, g->n_point);
-    put_fields(io, "/VTKHDF/CellData", g, &g->cell, g->n_cell);
+    put_fields(io, "/VTKHDF/PointData", &g->point, g->n_point);
+    put_fields(io, "/VTKHDF/CellData", &g->cell, g->n_cell);
 }
 
 /* Writes the file `name` in the folder of the request. */
@@ -130,11 +133,11 @@ static void set_lines(int n, int *offset, unsigned char *type)
 
 /* Holds computed values of nodes, cables and facets. */
 typedef struct {
-    int *offset, *number; /* `number` as in grid, for cables and facets */
+    int *offset; /* [n_cable + 1] */
     unsigned char *type, *slack;
     double *length_at_target_m, *displacement_m, *deviation_m, *normal_error_m, *length_change_m;
-    bool has_truss;   /* a truss is written */
-    hf_facets facets; /* empty when the case does not measure the surface */
+    bool has_truss;          /* a truss is written */
+    const hf_facets *facets; /* empty when the case does not measure the surface */
     int *facet_corner, *facet_offset;
     unsigned char *facet_type;
     hf_facet_errors facet_error;
@@ -143,15 +146,15 @@ typedef struct {
 
 static hf_status allocate(const hf_scene *s, scratch *t)
 {
-    size_t n = (size_t)s->n_node, m = (size_t)s->n_cable, n_facet = (size_t)t->facets.n_facet;
+    size_t n = (size_t)s->n_node, m = (size_t)s->n_cable, n_facet = (size_t)t->facets->n_facet;
     hf_facet_errors *e = &t->facet_error;
-    return HF_ARENA_ARRAYS(
-        &t->block, HF_ARRAY(t->number, n > m ? n : m), HF_ARRAY(t->slack, m), HF_ARRAY(t->offset, m + 1),
-        HF_ARRAY(t->type, m), HF_ARRAY(t->length_at_target_m, m), HF_ARRAY(t->displacement_m, 3 * n),
-        HF_ARRAY(t->deviation_m, n), HF_ARRAY(t->normal_error_m, n), HF_ARRAY(t->length_change_m, m),
-        HF_ARRAY(t->facet_corner, 4 * n_facet), HF_ARRAY(t->facet_offset, n_facet + 1),
-        HF_ARRAY(t->facet_type, n_facet), HF_ARRAY(e->normal_mean_m, n_facet), HF_ARRAY(e->normal_rms_m, n_facet),
-        HF_ARRAY(e->fit_normal_mean_m, n_facet), HF_ARRAY(e->fit_normal_rms_m, n_facet));
+    return HF_ARENA_ARRAYS(&t->block, HF_ARRAY(t->slack, m), HF_ARRAY(t->offset, m + 1), HF_ARRAY(t->type, m),
+                           HF_ARRAY(t->length_at_target_m, m), HF_ARRAY(t->displacement_m, 3 * n),
+                           HF_ARRAY(t->deviation_m, n), HF_ARRAY(t->normal_error_m, n), HF_ARRAY(t->length_change_m, m),
+                           HF_ARRAY(t->facet_corner, 4 * n_facet), HF_ARRAY(t->facet_offset, n_facet + 1),
+                           HF_ARRAY(t->facet_type, n_facet), HF_ARRAY(e->normal_mean_m, n_facet),
+                           HF_ARRAY(e->normal_rms_m, n_facet), HF_ARRAY(e->fit_normal_mean_m, n_facet),
+                           HF_ARRAY(e->fit_normal_rms_m, n_facet));
 }
 
 /* Computes the fields of a shape; shape NULL stands for the target positions. */
@@ -180,7 +183,7 @@ static void fill(const hf_scene *s, const hf_shape *shape, const hf_summary *sum
 /* Returns the grid of cables of a shape; shape NULL stands for the target positions. */
 static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *summary, const scratch *t)
 {
-    grid g = {s->n_node, s->n_cable, s->position_m, s->end, t->offset, t->type, t->number, {0}, {0}};
+    grid g = {s->n_node, s->n_cable, s->position_m, s->end, t->offset, t->type, {0}, {0}};
     if (shape) g.position_m = shape->position_m;
     add(&g.point, "role", "", NULL, 1, s->role);
     add(&g.point, "load_N", "N", HF_KIND_REAL, 3, s->load_N);
@@ -205,23 +208,27 @@ static grid grid_of(const hf_scene *s, const hf_shape *shape, const hf_summary *
 static void set_facet_cells(scratch *t)
 {
     int n = 0;
-    for (int i = 0; i < t->facets.n_facet; i++) {
-        const int *corner = t->facets.corner + 4 * (size_t)i;
+    for (int i = 0; i < t->facets->n_facet; i++) {
+        const int *corner = t->facets->corner + 4 * (size_t)i;
         int n_corner = corner[2] == corner[3] ? 3 : 4;
         t->facet_offset[i] = n;
         t->facet_type[i] = n_corner == 3 ? HF_VTKHDF_TRIANGLE : HF_VTKHDF_QUAD;
         for (int k = 0; k < n_corner; k++)
             t->facet_corner[n++] = corner[k];
     }
-    t->facet_offset[t->facets.n_facet] = n;
+    t->facet_offset[t->facets->n_facet] = n;
 }
 
-/* Returns the grid of facets, over the points of the grid of cables. */
-static grid grid_of_facets(const grid *cables, const scratch *t)
+/* Writes the grid of facets, over the points of the grid of cables. */
+static hf_status write_facets(const hf_export_request *o, const char *name, const grid *cables, const hf_shape *found,
+                              const hf_summary *summary, const scratch *t, hf_messages *messages)
 {
+    const hf_facet_shape shape = {cables->position_m, cables->n_cell, cables->corner, found ? found->tension_N : NULL};
     const hf_facet_errors *e = &t->facet_error;
     grid g = *cables;
-    g.n_cell = t->facets.n_facet;
+    if (hf_facet_map(&summary->surface, t->facets, &shape, e) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
+    g.n_cell = t->facets->n_facet;
     g.corner = t->facet_corner;
     g.offset = t->facet_offset;
     g.type = t->facet_type;
@@ -230,30 +237,20 @@ static grid grid_of_facets(const grid *cables, const scratch *t)
     add(&g.cell, "normal_rms_m", "m", HF_KIND_REAL, 1, e->normal_rms_m);
     add(&g.cell, "fit_normal_mean_m", "m", HF_KIND_REAL, 1, e->fit_normal_mean_m);
     add(&g.cell, "fit_normal_rms_m", "m", HF_KIND_REAL, 1, e->fit_normal_rms_m);
-    return g;
-}
-
-static hf_status write_facets(const hf_export_request *o, const char *name, const grid *cables, const hf_shape *found,
-                              const hf_summary *summary, const scratch *t, hf_messages *messages)
-{
-    const hf_facet_shape shape = {cables->position_m, cables->n_cell, cables->corner, found ? found->tension_N : NULL};
-    if (hf_facet_map(&summary->surface, &t->facets, &shape, &t->facet_error) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
-    const grid g = grid_of_facets(cables, t);
     return write_grid(o, name, &g, messages);
 }
 
 /* ---- the truss ---- */
 
 typedef struct {
-    int *number, *offset;
+    int *offset;
     unsigned char *type;
     double *displacement_m, *rotation_rad, *axial_force_N;
 } truss_scratch;
 
 static grid grid_of_truss(const hf_truss *truss, const hf_carrier_state *at, truss_scratch *t)
 {
-    grid g = {truss->n_node, truss->n_member, truss->position_m, truss->end, t->offset, t->type, t->number, {0}, {0}};
+    grid g = {truss->n_node, truss->n_member, truss->position_m, truss->end, t->offset, t->type, {0}, {0}};
     set_lines(truss->n_member, t->offset, t->type);
     add(&g.point, "fixed", "", NULL, 1, truss->fixed);
     add(&g.point, "mass_kg", "kg", HF_KIND_REAL, 1, truss->mass_kg);
@@ -284,9 +281,9 @@ static hf_status write_truss(const hf_export_request *o, const char *of_load_cas
     hf_status status = hf_export_read_truss(o->file, of_load_case, &truss, &at, messages);
     if (status == HF_OK) {
         size_t n = (size_t)truss.n_node, m = (size_t)truss.n_member;
-        status = HF_ARENA_ARRAYS(&block, HF_ARRAY(t.number, n > m ? n : m), HF_ARRAY(t.offset, m + 1),
-                                 HF_ARRAY(t.type, m), HF_ARRAY(t.displacement_m, 3 * n),
-                                 HF_ARRAY(t.rotation_rad, 3 * n), HF_ARRAY(t.axial_force_N, m));
+        status =
+            HF_ARENA_ARRAYS(&block, HF_ARRAY(t.offset, m + 1), HF_ARRAY(t.type, m), HF_ARRAY(t.displacement_m, 3 * n),
+                            HF_ARRAY(t.rotation_rad, 3 * n), HF_ARRAY(t.axial_force_N, m));
         if (status != HF_OK) hf_error(messages, status, "%s: out of memory", o->file);
     }
     if (status == HF_OK) {
@@ -325,7 +322,7 @@ static bool find_item(const hf_summary *s, const scratch *t, int i, item *w)
         return t->has_truss;
     }
     for (int j = 0; j < N_PART; j++) {
-        if (j == OF_FACETS ? t->facets.n_facet == 0 : j == OF_TRUSS && !(is_load_case && s->has_truss)) continue;
+        if (j == OF_FACETS ? t->facets->n_facet == 0 : j == OF_TRUSS && !(is_load_case && s->has_truss)) continue;
         if (is_load_case) /* ParaView opens files that differ only in a number as steps in time */
             snprintf(w->name[j], sizeof w->name[j], "load_case%s_%d.hdf", part[j], k + 1);
         else
@@ -351,52 +348,46 @@ static hf_status write_net(const hf_export_request *o, const hf_export_stored *s
     return status;
 }
 
-static hf_status write_all(const hf_export_request *o, const hf_export_stored *stored, scratch *t, char *said,
-                           size_t size, hf_messages *messages)
+static hf_status write_all(const hf_export_request *o, const hf_export_stored *stored, scratch *t,
+                           hf_messages *messages)
 {
     const hf_summary *s = &stored->summary;
     static const int order[N_FIXED] = {TARGET, HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, TRUSS};
     int n = N_FIXED + s->n_load_case;
+    static char names[3 * PATH_MAX];
     char path[PATH_MAX];
     item w;
+    *names = '\0';
     for (int i = 0; i < n; i++) { /* all names are checked before a file is written */
         if (!find_item(s, t, i, &w)) continue;
         for (int j = 0; j < N_PART; j++)
             if (*w.name[j]) HF_TRY(hf_export_claim_part(o, w.name[j], path, messages));
     }
     HF_TRY(hf_file_out_folder(o->output, messages));
-    size_t used = (size_t)snprintf(said, size, "%s: for ParaView, in %s:", o->file, o->output);
     for (int k = 0; k < n; k++) {
         int i = k < N_FIXED ? order[k] : k;
         if (!find_item(s, t, i, &w)) continue;
         if (*w.name[OF_NET]) HF_TRY(write_net(o, stored, i, &w, t, messages));
         if (*w.name[OF_TRUSS]) HF_TRY(write_truss(o, w.load_case, w.name[OF_TRUSS], messages));
-        for (int j = 0; j < N_PART && used < size; j++) {
+        for (int j = 0; j < N_PART; j++) {
             if (!*w.name[j] || (w.load_case && j != OF_NET)) continue;
-            used +=
-                (size_t)snprintf(said + used, size - used, w.load_case ? " %s (%s)" : " %s", w.name[j], w.load_case);
+            snprintf(path, sizeof path, w.load_case ? " %s (%s)" : " %s", w.name[j], w.load_case);
+            hf_text_append(names, sizeof names, "", path, "");
         }
     }
+    hf_print_line(o->said, "%s: for ParaView, in %s:%s", o->file, o->output, names);
     return HF_OK;
 }
 
-static hf_status export_vtk(const hf_export_request *o, const hf_export_stored *stored, char *said, size_t size,
-                            hf_messages *messages)
+static hf_status export_vtk(const hf_export_request *o, const hf_export_stored *stored, hf_messages *messages)
 {
     const hf_scene *scene = &stored->scene;
-    scratch t = {.has_truss = hf_export_has_truss(o, &stored->summary, messages)};
-    hf_status status = HF_OK;
-    if (stored->summary.surface.focal_length_m > 0) status = hf_facets_find(scene, &stored->summary.surface, &t.facets);
-    if (status == HF_OK) status = allocate(scene, &t);
-    if (status == HF_OK) {
-        set_lines(scene->n_cable, t.offset, t.type);
-        set_facet_cells(&t);
-        status = write_all(o, stored, &t, said, size, messages);
-    } else {
-        hf_error(messages, status, "%s: out of memory", o->file);
-    }
+    scratch t = {.has_truss = hf_export_has_truss(o, &stored->summary, messages), .facets = &stored->facets};
+    if (allocate(scene, &t) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", o->file);
+    set_lines(scene->n_cable, t.offset, t.type);
+    set_facet_cells(&t);
+    hf_status status = write_all(o, stored, &t, messages);
     hf_arena_free_block(t.block);
-    hf_facets_free(&t.facets);
     return status;
 }
 

@@ -3,8 +3,8 @@
 
 #include "base/path.h"
 #include "out/merged.h"
+#include "out/print.h"
 
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -23,7 +23,7 @@ static hf_status choose_output(const hf_export_request *o, const char *other, ch
     return hf_export_claim(o, output, messages);
 }
 
-hf_status hf_report(const hf_export_request *request, const char *other, char *said, size_t size, hf_messages *messages)
+hf_status hf_report(const hf_export_request *request, const char *other, hf_messages *messages)
 {
     char output[PATH_MAX];
     struct stat info = {0};
@@ -37,7 +37,7 @@ hf_status hf_report(const hf_export_request *request, const char *other, char *s
     else
         HF_TRY(hf_report_result(request->file, other, NULL, output, messages));
     if (stat(output, &info) == 0)
-        snprintf(said, size, "%s%s%s: report in %s (%.0f kB)", request->file, other ? " and " : "", other ? other : "",
-                 output, (double)info.st_size / 1000);
+        hf_print_line(request->said, "%s%s%s: report in %s (%.0f kB)", request->file, other ? " and " : "",
+                      other ? other : "", output, (double)info.st_size / 1000);
     return HF_OK;
 }

@@ -22,22 +22,22 @@ static void write_text(const char *text, FILE *f)
     write_html(shown, f);
 }
 
-void hf_report_page_write(const char *title, const char *answer, void (*write)(const void *context, FILE *file),
-                          const void *context, FILE *f)
+void hf_report_page_write(const void *page, FILE *f)
 {
+    const hf_report_page *p = page;
     const char *end_of_main = strstr(hf_report_page_body, "</main>");
     fputs(hf_report_page_head, f);
     fputs("</style>\n<title>", f);
-    write_text(title, f);
+    write_text(p->title, f);
     fputs("</title>\n", f);
     fwrite(hf_report_page_body, 1, (size_t)(end_of_main - hf_report_page_body), f);
-    if (answer) {
+    if (p->answer) {
         fputs("  <noscript><p>", f);
-        write_text(answer, f);
+        write_text(p->answer, f);
         fputs("</p></noscript>\n", f);
     }
     fputs(end_of_main, f);
-    write(context, f);
+    p->write_data(p->context, f);
     fputs("</script>\n<script>\n", f);
     fputs(hf_report_page_script, f);
     fputs("</script>\n</body>\n</html>\n", f);

@@ -14,7 +14,6 @@
 #include <hifdm/metrics.h>
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define POINTS_MAX 1000 /* points of a series on the page, about what a screen can show */
@@ -230,31 +229,29 @@ static void write_truss(const page *p, FILE *f)
 
 /* Writes key, unit and description of each figure of a result. The page can then show a figure that it has no text
  * for. */
-static void write_figures(FILE *f)
+static void write_figures(hf_json *j)
 {
-    hf_json j = {.file = f};
-    fputs(",\n", f);
-    hf_json_open(&j, "figures", '[');
+    hf_json_line(j, "");
+    hf_json_open(j, "figures", '[');
     for (const hf_result_field *figure = hf_result_field_of; figure < hf_result_field_of + HF_RESULT_N; figure++) {
         if (!figure->json) continue;
-        hf_json_open(&j, NULL, '{');
-        hf_json_text(&j, "key", hf_result_key(figure));
-        hf_json_text(&j, "units", figure->units ? figure->units : "");
-        hf_json_text(&j, "description", figure->description);
-        hf_json_close(&j, '}');
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "key", hf_result_key(figure));
+        hf_json_text(j, "units", figure->units ? figure->units : "");
+        hf_json_text(j, "description", figure->description);
+        hf_json_close(j, '}');
     }
-    hf_json_close(&j, ']');
+    hf_json_close(j, ']');
 }
 
 /* Writes the units of objectives by their names. */
-static void write_objective_units(const hf_summary *s, FILE *f)
+static void write_objective_units(const hf_summary *s, hf_json *j)
 {
-    hf_json j = {.file = f, .is_due = true};
-    hf_json_line(&j, "");
-    hf_json_open(&j, "objective_unit", '{');
+    hf_json_line(j, "");
+    hf_json_open(j, "objective_unit", '{');
     for (int k = 0; k < s->objectives.n; k++)
-        hf_json_text(&j, s->objectives.name[k], hf_ledger_objective_unit(s->objectives.name[k]));
-    hf_json_close(&j, '}');
+        hf_json_text(j, s->objectives.name[k], hf_ledger_objective_unit(s->objectives.name[k]));
+    hf_json_close(j, '}');
 }
 
 static void write_word(hf_json *j, const hf_word *w, const char *name)
@@ -269,20 +266,19 @@ static void write_word(hf_json *j, const hf_word *w, const char *name)
 
 /* Writes terms, descriptions of figures, and the words of stop reasons and bounds, as `hifdm explain` prints them.
  * Figures and reasons also have their earlier names. */
-static void write_words(FILE *f)
+static void write_words(hf_json *j)
 {
-    hf_json j = {.file = f, .is_due = true};
-    hf_json_line(&j, "");
-    hf_json_open(&j, "words", '[');
+    hf_json_line(j, "");
+    hf_json_open(j, "words", '[');
     for (int i = 0; i < hf_word_count(); i++) {
         const hf_word w = hf_word_at(i);
         bool is_term = !strcmp(w.kind, "term");
         if (!is_term && strncmp(w.kind, "figure", 6) != 0 && !strstr(w.kind, "_reason")) continue;
-        write_word(&j, &w, w.word);
+        write_word(j, &w, w.word);
         for (const char *p = w.formerly; !is_term && *p; p = hf_word_next(p))
-            write_word(&j, &w, p);
+            write_word(j, &w, p);
     }
-    hf_json_close(&j, ']');
+    hf_json_close(j, ']');
 }
 
 /* ---- series ---- */
@@ -382,25 +378,22 @@ static void write_patterns(const page *p, FILE *f)
 
 /* ---- the page with a second result ---- */
 
-static void write_overrides(const page *p, FILE *f)
+/* Writes a text of the case as a list of one text, "" if it is not there. */
+static void write_stored(const char *key, const hf_texts *text, FILE *f)
 {
-    hf_json_strings("overrides", &(const char *){p->overrides.n ? hf_texts_at(&p->overrides, 0) : ""}, 1, f);
-}
-
-static void write_case(const page *p, FILE *f)
-{
-    hf_json_strings("case_text", &(const char *){p->case_text.n ? hf_texts_at(&p->case_text, 0) : ""}, 1, f);
-    write_overrides(p, f);
+    hf_json_strings(key, &(const char *){text->n ? hf_texts_at(text, 0) : ""}, 1, f);
 }
 
 static void write_other(const page *p, const page *other, FILE *f)
 {
     hf_json j = {.file = f};
-    write_case(p, f);
+    write_stored("case_text", &p->case_text, f);
+    write_stored("overrides", &p->overrides, f);
     fputs(",\n\"other\":{", f);
     hf_json_text(&j, "name", hf_path_name(other->path));
-    write_case(other, f);
-    write_objective_units(&other->summary, f);
+    write_stored("case_text", &other->case_text, f);
+    write_stored("overrides", &other->overrides, f);
+    write_objective_units(&other->summary, &j);
     fputs(",\"summary\":", f);
     hf_summary_write_json(&other->summary, hf_summary_status(&other->summary), other->summary.warnings, other->path, f);
     if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_N_STAGE, f);
@@ -426,16 +419,16 @@ static void write_data(const void *context, FILE *f)
     bool has_variables = s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front;
     fprintf(f, ",\"n_free\":%d,\"n_variable\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_variable : 0);
     hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
-    write_figures(f);
-    write_objective_units(s, f);
-    write_words(f);
+    write_figures(&j);
+    write_objective_units(s, &j);
+    write_words(&j);
     write_net(p, f);
     write_shapes(p, N_SHAPE, f);
     write_truss(p, f);
     write_series(p, f);
     write_patterns(p, f);
     if (p->other) write_other(p, p->other, f);
-    if (!p->other && s->front) write_overrides(p, f);
+    if (!p->other && s->front) write_stored("overrides", &p->overrides, f);
     if (p->part) {
         hf_json_line(&j, "");
         hf_json_open(&j, p->part->key, '{');
@@ -443,13 +436,6 @@ static void write_data(const void *context, FILE *f)
         hf_json_close(&j, '}');
     }
     fputs("}\n", f);
-}
-
-static void write_page(const void *context, FILE *f)
-{
-    const page *p = context;
-    char said[ANSWER_SIZE];
-    hf_report_page_write(heading(&p->summary), said_of(&p->summary, hf_print_answer, said), write_data, p, f);
 }
 
 /* ---- reading ---- */
@@ -473,8 +459,10 @@ static hf_status read_shapes(page *p, hf_messages *messages)
     hf_series_free(&there);
     p->has_shape[HF_STAGE_SEARCH] = hf_summary_has_shape(&p->summary, HF_STAGE_SEARCH);
     p->has_shape[HF_STAGE_REFINE] = p->summary.stage[HF_STAGE_REFINE].exists;
-    for (int i = 0; i < HF_N_STAGE; i++)
+    for (int i = 0; i < HF_N_STAGE; i++) {
         if (p->has_shape[i]) HF_TRY(hf_store_read_shape(p->path, (hf_stage)i, &p->shape[i], messages));
+        if (p->summary.stage[i].pattern) HF_TRY(hf_store_read_pattern(p->path, (hf_stage)i, &p->pattern[i], messages));
+    }
     return HF_OK;
 }
 
@@ -493,35 +481,16 @@ static hf_status read_load_cases(page *p, hf_messages *messages)
     return HF_OK;
 }
 
-static hf_status read_patterns(page *p, hf_messages *messages)
-{
-    for (int i = 0; i < HF_N_STAGE; i++)
-        if (p->summary.stage[i].pattern) HF_TRY(hf_store_read_pattern(p->path, (hf_stage)i, &p->pattern[i], messages));
-    return HF_OK;
-}
-
-static void lay_out_facets(hf_arena *a, page *p)
-{
-    size_t n = (size_t)p->facets.n_facet;
-    for (int i = 0; i < N_SHAPE; i++) {
-        if (!p->has_shape[i]) continue;
-        hf_facet_errors *e = &p->facet_error[i];
-        e->normal_mean_m = hf_arena_take(a, n, sizeof(double));
-        e->normal_rms_m = hf_arena_take(a, n, sizeof(double));
-        e->fit_normal_mean_m = hf_arena_take(a, n, sizeof(double));
-        e->fit_normal_rms_m = hf_arena_take(a, n, sizeof(double));
-    }
-}
-
 static hf_status map_facets(page *p)
 {
-    hf_arena arena = {0};
+    double *error_m;
     if (!(p->summary.surface.focal_length_m > 0)) return HF_OK;
     HF_TRY(hf_facets_find(&p->scene, &p->summary.surface, &p->facets));
-    HF_TRY(HF_ARENA_MAKE(&arena, lay_out_facets(&arena, p)));
-    p->facet_block = arena.block;
-    for (int i = 0; i < N_SHAPE; i++) {
+    size_t n = (size_t)p->facets.n_facet;
+    HF_TRY(HF_ARENA_ARRAYS(&p->facet_block, HF_ARRAY(error_m, 4 * N_SHAPE * n)));
+    for (int i = 0; i < N_SHAPE; i++, error_m += 4 * n) {
         const hf_facet_shape shape = {p->shape[i].position_m, p->scene.n_cable, p->scene.end, p->shape[i].tension_N};
+        p->facet_error[i] = (hf_facet_errors){error_m, error_m + n, error_m + 2 * n, error_m + 3 * n};
         if (p->has_shape[i]) HF_TRY(hf_facet_map(&p->summary.surface, &p->facets, &shape, &p->facet_error[i]));
     }
     return HF_OK;
@@ -538,7 +507,6 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_texts(p->path, "/case/overrides", &p->overrides, messages));
     HF_TRY(read_shapes(p, messages));
     HF_TRY(read_load_cases(p, messages));
-    HF_TRY(read_patterns(p, messages));
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     return check_truss(p, messages);
 }
@@ -556,7 +524,7 @@ static void free_page(page *p)
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
     hf_facets_free(&p->facets);
-    free(p->facet_block);
+    hf_arena_free_block(p->facet_block);
     hf_texts_free(&p->case_text);
     hf_texts_free(&p->overrides);
 }
@@ -572,10 +540,13 @@ hf_status hf_report_result(const char *path, const char *other, const hf_report_
         status = read_page(&beside, messages);
         p.other = &beside;
     }
+    char answer[ANSWER_SIZE] = "";
+    if (status == HF_OK) said_of(&p.summary, hf_print_answer, answer);
+    const hf_report_page text = {heading(&p.summary), answer, write_data, &p};
     if (status == HF_OK && part)
-        status = hf_file_out_set_write(part->files, output, write_page, &p, messages);
+        status = hf_file_out_set_write(part->files, output, hf_report_page_write, &text, messages);
     else if (status == HF_OK)
-        status = hf_file_out_write(output, write_page, &p, messages);
+        status = hf_file_out_write(output, hf_report_page_write, &text, messages);
     free_page(&p);
     free_page(&beside);
     return status;

@@ -172,12 +172,6 @@ static void write_data(const void *context, FILE *f)
     fputs("}}\n", f);
 }
 
-static void write_page(const void *context, FILE *f)
-{
-    const study_page *p = context;
-    hf_report_page_write(hf_merged_heading(&p->merged), NULL, write_data, p, f);
-}
-
 /* Finds the folders for links. A page in the folder of the merged file links to the results by the same relative paths
  * as that file. A page in another folder uses absolute paths. */
 static void find_folders(study_page *p, const char *output)
@@ -198,7 +192,8 @@ hf_status hf_report_study(const char *path, const char *output, hf_messages *mes
     hf_status status = hf_merged_read(path, &p.merged, messages);
     find_folders(&p, output);
     if (status == HF_OK) status = hf_store_read_links(path, "/runs", &p.merged.id, &p.file, messages);
-    if (status == HF_OK) status = hf_file_out_write(output, write_page, &p, messages);
+    const hf_report_page page = {hf_merged_heading(&p.merged), NULL, write_data, &p};
+    if (status == HF_OK) status = hf_file_out_write(output, hf_report_page_write, &page, messages);
     hf_texts_free(&p.file);
     hf_merged_free(&p.merged);
     return status;
