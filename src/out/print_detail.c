@@ -3,7 +3,6 @@
 
 #include "net/symmetry.h"
 #include "store/ledger.h"
-#include <hifdm/config.h>
 
 #include <math.h>
 
@@ -20,8 +19,7 @@ static void print_result(const hf_form_result *r, FILE *f)
 
 static void print_sets(const hf_set_tensions *s, FILE *f)
 {
-    if (!s) return;
-    if (s->n == 0) return;
+    if (!s || s->n == 0) return;
     fputs("                tension ratio of sets:", f);
     for (int k = 0; k < s->n; k++)
         fprintf(f, "%s %s %s", k ? "," : "", s->name[k], hf_print_decimals(s->ratio[k]).text);
@@ -46,18 +44,11 @@ void hf_print_held(const hf_held_limits *h, FILE *f)
     }
 }
 
-void hf_print_objective(const char *before, const char *name, double value, FILE *f)
-{
-    const char *unit;
-    double scale = hf_print_scale(hf_ledger_objective_unit(name), &unit);
-    fprintf(f, "%s%s %.6g%s%s", before, name, scale * value, *unit ? " " : "", unit);
-}
-
-/* Prints an objective in SI units, as in merit and weights. */
-static void print_objective(const char *before, const char *name, double value, FILE *f)
+void hf_print_objective(const char *before, const char *name, double value, bool in_SI, FILE *f)
 {
     const char *unit = hf_ledger_objective_unit(name);
-    fprintf(f, "%s%s %.6g%s%s", before, name, value, *unit ? " " : "", unit);
+    double scale = in_SI ? 1 : hf_print_scale(unit, &unit);
+    fprintf(f, "%s%s %.6g%s%s", before, name, scale * value, *unit ? " " : "", unit);
 }
 
 void hf_print_objectives(const hf_summary *s, const hf_form_result *r, FILE *f)
@@ -69,8 +60,7 @@ void hf_print_objectives(const hf_summary *s, const hf_form_result *r, FILE *f)
     else
         fprintf(f, "                merit %.6g from", r->merit);
     for (int k = 0; k < s->objectives.n; k++) {
-        (s->objectives.is_front ? hf_print_objective : print_objective)(k ? ", " : " ", s->objectives.name[k],
-                                                                        r->objective[k], f);
+        hf_print_objective(k ? ", " : " ", s->objectives.name[k], r->objective[k], !s->objectives.is_front, f);
         if (!s->objectives.is_front) fprintf(f, " (weight %g)", s->objectives.weight[k]);
     }
     fputc('\n', f);

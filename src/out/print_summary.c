@@ -307,19 +307,22 @@ static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
 
 /* ---- surface ---- */
 
-/* Prints the gain losses. One without a value is outside the range of Ruze's formula if the surface error has a value,
+/* Formats a gain loss. One without a value is outside the range of Ruze's formula if the surface error has a value,
  * otherwise it is unknown. */
+static hf_print_text loss_text(double rms_m, double loss_dB, int digits)
+{
+    hf_print_text t = {"-"};
+    if (isfinite(rms_m) && isnan(loss_dB))
+        snprintf(t.text, sizeof t.text, "above %g", HF_RUZE_MOST_DB);
+    else if (isfinite(loss_dB))
+        snprintf(t.text, sizeof t.text, "%.*g", digits, hf_print_loss_dB(loss_dB));
+    return t;
+}
+
 static void print_losses(const hf_summary *s, double rms_m, const double *loss_dB, FILE *f)
 {
-    for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
-        if (k) fputc('/', f);
-        if (isnan(rms_m))
-            fputc('-', f);
-        else if (isnan(loss_dB[k]))
-            fprintf(f, "above %g", HF_RUZE_MOST_DB);
-        else
-            fprintf(f, "%.3g", hf_print_loss_dB(loss_dB[k]));
-    }
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
+        fprintf(f, "%s%s", k ? "/" : "", loss_text(rms_m, loss_dB[k], 3).text);
 }
 
 void hf_print_gain_loss(const hf_summary *s, FILE *f)
@@ -412,7 +415,7 @@ static void print_front_values(const hf_summary *s, const char *name, int number
     snprintf(what, sizeof what, number ? "%s, point %d" : "%s", name, number);
     fprintf(f, "                %-15s", what);
     for (int k = 0; k < t->n_objective; k++)
-        hf_print_objective(k ? ", " : " ", s->objectives.name[k], objective[k], f);
+        hf_print_objective(k ? ", " : " ", s->objectives.name[k], objective[k], false, f);
     for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
         if (k != t->minimised && isfinite(multiplier[k]))
             fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] * slope_scale(s, k) : 0.0);
@@ -465,21 +468,17 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
 static void print_form_parts(const hf_summary *s, hf_stage result, FILE *f)
 {
     bool is_form = result == HF_STAGE_FORM;
-    const struct {
-        bool is_there;
-        const char *name;
-    } part[] = {{is_form && s->stage[HF_STAGE_FORM].surface.is_measured, "surface"},
-                {is_form && s->stage[HF_STAGE_FORM].pattern != NULL, "pattern"},
-                {s->n_load_case > 0, "load cases"},
-                {s->tolerance != NULL, "as built"}};
-    const char *before = "                ";
-    for (int i = 0; i < (int)(sizeof part / sizeof *part); i++) {
-        if (!part[i].is_there) continue;
-        fprintf(f, "%s%s", before, part[i].name);
-        before = ", ";
-    }
-    if (*before == ',')
-        fputs(": of the form-finding, not of a point of the front; a run with --point computes them for a point\n", f);
+    char parts[64] = "";
+    if (is_form && s->stage[HF_STAGE_FORM].surface.is_measured) strcpy(parts, "surface");
+    if (is_form && s->stage[HF_STAGE_FORM].pattern) hf_text_append(parts, sizeof parts, ", ", "pattern", "");
+    if (s->n_load_case > 0) hf_text_append(parts, sizeof parts, ", ", "load cases", "");
+    if (s->tolerance) hf_text_append(parts, sizeof parts, ", ", "as built", "");
+    if (!*parts) return;
+    fprintf(
+        f,
+        "                %s: of the form-finding, not of a point of the front; a run with --point computes them for "
+        "a point\n",
+        parts);
 }
 
 /* Prints a value, or a dash of this width for NaN. */
@@ -507,10 +506,7 @@ static void print_load_case_surface(const hf_summary *s, const hf_surface_measur
         }
         for (int k = 0; k < at->n; k++) {
             if (at->value[k] != highest_Hz) continue;
-            if (isfinite(rms_m) && isnan(loss_dB[k]))
-                fprintf(f, "   above %g", HF_RUZE_MOST_DB);
-            else
-                print_if_finite(" %9.4g", hf_print_loss_dB(loss_dB[k]), 10, f);
+            fprintf(f, "%10s", loss_text(rms_m, loss_dB[k], 4).text);
             break;
         }
     }
@@ -553,9 +549,8 @@ static void print_load_cases(const hf_summary *s, FILE *f)
 /* Prints the far field of the result, one line for each frequency and cut. */
 static void print_pattern(const hf_pattern_summary *s, FILE *f)
 {
-    if (!s) return;
     static const char *const of_feed[] = {"", "a point", "a line", "a plane wave"};
-    if (s->n_frequency == 0) return;
+    if (!s || s->n_frequency == 0) return;
     fprintf(f, "  pattern       %7s %7s %9s %10s %13s %15s %8s   physical optics, feed: %s", "GHz", "phi deg",
             "gain dBi", "beam deg", "half power", "first sidelobe", "highest", of_feed[s->feed.kind]);
     if (s->feed.kind != HF_FEED_PLANE_WAVE) fprintf(f, ", cos^%.3g", s->feed.cos_power);

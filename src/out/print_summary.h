@@ -18,8 +18,8 @@ void hf_print_details(const hf_summary *summary, FILE *file);
 /* Prints a line for each limit that the design of a stage reaches. */
 void hf_print_held(const hf_held_limits *held, FILE *file);
 
-/* Prints an objective by its name in the file with its value, lengths in mm. */
-void hf_print_objective(const char *before, const char *name, double value, FILE *file);
+/* Prints an objective by its name in the file with its value: in SI units as in merit and weights, or lengths in mm. */
+void hf_print_objective(const char *before, const char *name, double value, bool in_SI, FILE *file);
 
 /* Prints a line with the merit of a result and the values of its objectives, or the objectives of a front. */
 void hf_print_objectives(const hf_summary *summary, const hf_form_result *result, FILE *file);

@@ -1,8 +1,8 @@
 /* Prints the figures of a tolerance analysis. */
 #include "out/print_summary.h"
+#include "base/text.h"
 
 #include <math.h>
-#include <string.h>
 
 #define CABLES_SHOWN 3
 
@@ -90,12 +90,11 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
 
 static void print_shares(const hf_tolerance_summary *t, FILE *f)
 {
-    char line[1200] = "";
+    char line[1200] = "", item[400];
     for (int k = 0; k < t->n_ranked && k < CABLES_SHOWN; k++) {
-        size_t used = strlen(line);
         double percent = 100 * t->ranked_share[k];
-        snprintf(line + used, sizeof line - used, percent < 99.5 ? "%s%s %.2g %%" : "%s%s %.0f %%", k ? ", " : "",
-                 t->ranked_id[k], percent);
+        snprintf(item, sizeof item, percent < 99.5 ? "%s %.2g %%" : "%s %.0f %%", t->ranked_id[k], percent);
+        hf_text_append(line, sizeof line, ", ", item, "");
     }
     if (*line) hf_print_line(f, "                cables that contribute most to the variance of psi: %s", line);
 }
@@ -110,11 +109,10 @@ void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
         fprintf(f, " in 95 %% of %d samples, ", t->samples);
     }
     print_mm(f, t->nominal_psi_m);
-    fputs(" without errors; ", f);
-    fprintf(f, "%d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack, t->n_with_loose,
-            t->n_failed, hf_print_duration(t->tolerance_wall_s).text);
-    for (int k = 0; verbose && k < HF_TOLERANCE_N_MEASURE; k++)
-        if (k < HF_TOLERANCE_SLACK) print_measure(&t->figure[k], k, f);
+    fprintf(f, " without errors; %d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack,
+            t->n_with_loose, t->n_failed, hf_print_duration(t->tolerance_wall_s).text);
+    for (int k = 0; verbose && k < HF_TOLERANCE_SLACK; k++)
+        print_measure(&t->figure[k], k, f);
     if (verbose) print_first_order(t, f);
     print_yield(t, f);
     print_shares(t, f);

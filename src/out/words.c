@@ -176,25 +176,20 @@ const char *hf_word_next(const char *item)
 }
 
 /* Returns true if `word` is the same as the word of an entry, or as one of its other names. */
-static bool has_name(const hf_word *w, const char *word, bool (*is_same)(const char *known, const char *word))
+static bool has_name(const hf_word *w, const char *word, int (*compare)(const char *known, const char *word))
 {
     const char *list[] = {w->also, w->formerly};
-    bool found = is_same(w->word, word);
+    bool found = !compare(w->word, word);
     for (int k = 0; k < 2; k++)
         for (const char *p = list[k]; *p; p = hf_word_next(p))
-            found |= is_same(p, word);
+            found |= !compare(p, word);
     return found;
-}
-
-static bool is_equal(const char *known, const char *word)
-{
-    return !strcmp(known, word);
 }
 
 bool hf_word_is(int i, const char *word)
 {
     const hf_word w = hf_word_at(i);
-    return has_name(&w, word, is_equal) || hf_word_is_in(i, word);
+    return has_name(&w, word, strcmp) || hf_word_is_in(i, word);
 }
 
 bool hf_word_is_in(int i, const char *messages)
@@ -218,15 +213,16 @@ static bool is_unit(const char *rest)
     return false;
 }
 
-static bool is_like(const char *known, const char *word)
+/* Compares two words like strcmp, but for capitals, separators, a plural s and units. */
+static int compare_loosely(const char *known, const char *word)
 {
     while (*known && hf_word_letter(*known) == hf_word_letter(*word))
         known++, word++;
-    return (!*known || is_unit(known)) && (!*word || !strcmp(word, "s"));
+    return !((!*known || is_unit(known)) && (!*word || !strcmp(word, "s")));
 }
 
 bool hf_word_is_like(int i, const char *word)
 {
     const hf_word w = hf_word_at(i);
-    return has_name(&w, word, is_like);
+    return has_name(&w, word, compare_loosely);
 }
