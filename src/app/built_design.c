@@ -13,7 +13,6 @@
 #include <hifdm/formfind.h>
 #include <hifdm/metrics.h>
 
-#include <math.h>
 #include <string.h>
 
 /* ---- the net of the result ---- */

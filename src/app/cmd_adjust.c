@@ -7,9 +7,9 @@
  *      adjustment, in the order in which they are made. A value above 0 makes the cable longer.
  *
  * Contents: the table - for people - for programs - the page - the command */
-#include "app/cmd.h"
-
 #include "app/built_design.h"
+#include "app/output.h"
+
 #include "base/csv.h"
 #include "out/print.h"
 #include "out/report.h"
@@ -193,11 +193,6 @@ static void print_numbers(const job *j, FILE *f)
     if (n_off > NAMED_MAX) hf_print_line(f, "and %d more shared errors beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
-static bool is_doubtful(const hf_adjust_turnbuckle *turned)
-{
-    return turned->gain_m < turned->gain_sigma_m;
-}
-
 static void print_moves(const job *j, FILE *f)
 {
     const hf_adjustment *a = &j->adjustment;
@@ -209,9 +204,10 @@ static void print_moves(const job *j, FILE *f)
         const hf_adjust_turnbuckle *turned = &a->turnbuckle[k];
         char slack[32] = "", gain[64] = "";
         if (turned->n_slack) snprintf(slack, sizeof slack, "  %d slack", turned->n_slack);
-        if (is_doubtful(turned))
+        bool is_doubtful = turned->gain_m < turned->gain_sigma_m;
+        if (is_doubtful)
             snprintf(gain, sizeof gain, "  gains %.4f +- %.4f", turned->gain_m * 1e3, turned->gain_sigma_m * 1e3);
-        n_doubtful += is_doubtful(turned);
+        n_doubtful += is_doubtful;
         hf_print_line(f, "%5d  %-20s %+13.6g  %10.4g %10.4g  %10.4f %11.4f%s%s", k + 1,
                       j->built.scene.cable_id[turned->cable], turned->turnbuckle_m * 1e3, turned->before_N,
                       turned->after_N, turned->figure_m * 1e3, turned->expected_m * 1e3, slack, gain);
@@ -322,7 +318,23 @@ static void print_json_instead(const job *from, hf_json *j)
     hf_json_close(j, ']');
 }
 
-static void print_json_figures(const job *from, hf_json *j)
+static void print_json_numbers(const job *from, hf_json *j)
+{
+    hf_json_open_rows(j, "shared");
+    for (int k = 0; k < from->prior.n_shared; k++) {
+        const hf_prior_number *n = &from->prior.number[k];
+        hf_json_open_row(j);
+        hf_json_text(j, "kind", number_word(n));
+        if (n->set) hf_json_text(j, "set", n->set);
+        hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);
+        hf_json_number(j, "sigmas", fabs(from->estimate.shared[k]));
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
+/* Prints all findings except the error of each cable. */
+static void print_json_findings(const job *from, hf_json *j)
 {
     const hf_adjustment *a = &from->adjustment;
     hf_json_line(j, " ");
@@ -353,21 +365,9 @@ static void print_json_figures(const job *from, hf_json *j)
     hf_json_integer(j, "estimate_steps", from->estimate.n_step);
     hf_json_integer(j, "rounds", a->n_round);
     hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
-}
-
-static void print_json_numbers(const job *from, hf_json *j)
-{
-    hf_json_open_rows(j, "shared");
-    for (int k = 0; k < from->prior.n_shared; k++) {
-        const hf_prior_number *n = &from->prior.number[k];
-        hf_json_open_row(j);
-        hf_json_text(j, "kind", number_word(n));
-        if (n->set) hf_json_text(j, "set", n->set);
-        hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);
-        hf_json_number(j, "sigmas", fabs(from->estimate.shared[k]));
-        hf_json_close(j, '}');
-    }
-    hf_json_close(j, ']');
+    print_json_moves(from, j);
+    print_json_instead(from, j);
+    print_json_numbers(from, j);
 }
 
 static void print_json_errors(const job *from, hf_json *j)
@@ -387,10 +387,7 @@ static void print_json(const job *from, const hf_options *o, hf_status status, c
     hf_json_open(&j, NULL, '{');
     hf_json_text(&j, "status", hf_status_word(status));
     if (status == HF_OK) {
-        print_json_figures(from, &j);
-        print_json_moves(from, &j);
-        print_json_instead(from, &j);
-        print_json_numbers(from, &j);
+        print_json_findings(from, &j);
         print_json_errors(from, &j);
     }
     hf_json_line(&j, " ");
@@ -410,23 +407,11 @@ static void write_part(const void *context, hf_json *j)
     hf_json_text(j, "set", s->set);
     hf_json_number(j, "target_m", s->target_m);
     hf_json_bool(j, "fits", hf_adjust_case_fits(from));
-    print_json_figures(from, j);
-    print_json_moves(from, j);
-    print_json_instead(from, j);
-    print_json_numbers(from, j);
+    print_json_findings(from, j);
     hf_json_pack_values("error_m", "f64", from->estimate.cut_m, from->built.model.n_cable, j->file);
 }
 
 /* ---- the command ---- */
-
-static hf_status check_output(const job *j, const hf_options *o, const char *output, hf_messages *messages)
-{
-    if (!output) return HF_OK;
-    HF_TRY(hf_problem_spare_inputs(&j->problem, o->measured, output, messages));
-    if (o->result) HF_TRY(hf_file_out_spare(o->result, "an input of this run", output, messages));
-    HF_TRY(hf_export_claim_file(output, o->force, messages));
-    return hf_file_out_try(output, messages);
-}
 
 static hf_status check_outputs(const job *j, const hf_options *o, hf_messages *messages)
 {
@@ -436,9 +421,9 @@ static hf_status check_outputs(const job *j, const hf_options *o, hf_messages *m
                         o->report, o->file);
     if (o->output && o->report && !strcmp(o->output, o->report))
         return hf_error(messages, HF_BAD_USAGE, "-o and --report both name %s: use different names", o->output);
-    HF_TRY(check_output(j, o, o->output, messages));
+    HF_TRY(hf_output_check(o, &j->problem, o->measured, o->output, messages));
     HF_TRY(hf_file_out_spare(o->output, "the table of adjustments", o->report ? o->report : "", messages));
-    return check_output(j, o, o->report, messages);
+    return hf_output_check(o, &j->problem, o->measured, o->report, messages);
 }
 
 static hf_status execute(job *j, const hf_options *o, hf_messages *messages)

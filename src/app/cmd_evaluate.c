@@ -13,9 +13,9 @@
  *      case -> form-finding -> table -> batch -> results, and derivatives of feasible designs
  *
  * Contents: the table - the initial design - evaluation - derivatives - writing - the command */
-#include "app/cmd.h"
+#include "app/output.h"
 
-#include "app/options.h"
+#include "base/arena.h"
 #include "base/clock.h"
 #include "base/csv.h"
 #include "base/file_out.h"
@@ -26,12 +26,9 @@
 #include "out/print.h"
 #include "run/diagnose.h"
 #include "run/problem_parts.h"
-#include <hifdm/run.h>
 #include <hifdm/store.h>
 
-#include <errno.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -46,19 +43,17 @@ typedef struct {
     double *design;         /* [n_row][n_variable] */
     hf_form_result *result; /* [n_row] */
     double *derivative;     /* [n_feasible][n_slope][n_variable]; NULL without --jacobian */
-    int n_feasible, best;   /* best: row of the minimum merit, or -1; -1 with objectives */
+    void *columns, *rows, *slopes; /* blocks of the arrays above */
+    int n_feasible, best;          /* best: row of the minimum merit, or -1; -1 with objectives */
     double wall_s;
 } job;
 
 static void job_free(job *j)
 {
     hf_csv_free(&j->table);
-    free(j->variable);
-    free(j->name);
-    free(j->where);
-    free(j->design);
-    free(j->derivative);
-    free(j->result);
+    hf_arena_free_block(j->columns);
+    hf_arena_free_block(j->rows);
+    hf_arena_free_block(j->slopes);
     hf_problem_free(&j->problem);
 }
 
@@ -77,10 +72,8 @@ static hf_status name_columns(job *j, hf_messages *messages)
 {
     const hf_model *m = &j->problem.model;
     size_t n = (size_t)m->n_variable + 1;
-    j->variable = calloc(n, sizeof *j->variable);
-    j->name = calloc(n, sizeof *j->name);
-    j->where = calloc(n, sizeof *j->where);
-    if (!j->variable || !j->name || !j->where) return no_memory(j, messages);
+    if (HF_ARENA_ARRAYS(&j->columns, HF_ARRAY(j->variable, n), HF_ARRAY(j->name, n), HF_ARRAY(j->where, n)) != HF_OK)
+        return no_memory(j, messages);
     for (int k = 0; k < m->n_variable; k++) {
         hf_model_variable_name(m, &j->problem.scene, k, j->variable[k], sizeof j->variable[k]);
         j->name[k] = j->variable[k];
@@ -135,9 +128,8 @@ static hf_status read_table(job *j, const char *path, hf_messages *messages)
     status = hf_csv_find_columns(t, j->name, n_variable + 1, n_variable, j->where);
     if (t->n_fault > HF_FAULT_MAX) return status;
     size_t n = (size_t)t->n_row;
-    j->design = malloc(n * (size_t)n_variable * sizeof *j->design);
-    j->result = calloc(n, sizeof *j->result);
-    if (!j->design || !j->result) return no_memory(j, messages);
+    if (HF_ARENA_ARRAYS(&j->rows, HF_ARRAY(j->design, n * (size_t)n_variable), HF_ARRAY(j->result, n)) != HF_OK)
+        return no_memory(j, messages);
     for (int row = 0; row < t->n_row; row++)
         read_row(j, row);
     return hf_csv_close_faults(t);
@@ -180,8 +172,8 @@ static hf_status evaluate(job *j, int threads, hf_messages *messages)
 static hf_status differentiate(job *j, hf_messages *messages)
 {
     size_t n = (size_t)hf_problem_n_slope(&j->problem) * (size_t)j->problem.model.n_variable;
-    j->derivative = calloc((size_t)j->n_feasible + 1, n * sizeof *j->derivative);
-    if (!j->derivative) return no_memory(j, messages);
+    if (HF_ARENA_ARRAYS(&j->slopes, HF_ARRAY(j->derivative, n * (size_t)j->n_feasible)) != HF_OK)
+        return no_memory(j, messages);
     return hf_problem_slopes(&j->problem, j->table.n_row, j->design, j->result, j->derivative, messages);
 }
 
@@ -342,16 +334,6 @@ static void print_json(const job *from, const char *path, const char *jacobian, 
 
 /* ---- the command ---- */
 
-/* Checks an output name before the work begins. Refuses a file that exists, that is an input, or that cannot be
- * written. */
-static hf_status check_output(const job *j, const hf_options *o, const char *path, hf_messages *messages)
-{
-    if (!path) return HF_OK;
-    HF_TRY(hf_problem_spare_inputs(&j->problem, o->designs, path, messages));
-    HF_TRY(hf_export_claim_file(path, o->force, messages));
-    return hf_file_out_try(path, messages);
-}
-
 static hf_status execute(job *j, const hf_options *o, const char *path, FILE *file, hf_messages *messages)
 {
     HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, NULL, &j->problem, messages));
@@ -359,8 +341,8 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
         return hf_error(
             messages, HF_BAD_CASE,
             "%s: no boundary cable has a free end, so there are no design variables; add optimize.variables", o->file);
-    HF_TRY(check_output(j, o, path, messages));
-    if (o->jacobian) HF_TRY(check_output(j, o, o->jacobian, messages));
+    HF_TRY(hf_output_check(o, &j->problem, o->designs, path, messages));
+    HF_TRY(hf_output_check(o, &j->problem, o->designs, o->jacobian, messages));
     HF_TRY(name_columns(j, messages));
     if (o->designs) HF_TRY(read_table(j, o->designs, messages));
     HF_TRY(find_initial(j, messages));

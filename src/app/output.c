@@ -3,6 +3,7 @@
 #include "app/output.h"
 
 #include "base/file_io.h"
+#include "run/problem_parts.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -25,6 +26,16 @@ int hf_output_write(int file, const char *text, size_t n)
         if (hf_file_io_write(file, text, part) != 0) return -1;
     }
     return 0;
+}
+
+hf_status hf_output_check(const hf_options *o, const hf_problem *problem, const char *table, const char *path,
+                          hf_messages *messages)
+{
+    if (!path) return HF_OK;
+    HF_TRY(hf_problem_spare_inputs(problem, table, path, messages));
+    HF_TRY(hf_file_out_spare(o->result, "an input of this run", path, messages));
+    HF_TRY(hf_export_claim_file(path, o->force, messages));
+    return hf_file_out_try(path, messages);
 }
 
 bool hf_output_has_colour(int file)

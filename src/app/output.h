@@ -1,10 +1,15 @@
-/* output - writes to readers that may have stopped reading. A request to stop (base/signals.h) is noticed while the
- * program waits for such a reader. */
+/* output - checks the names of output files, and writes to readers that may have stopped reading. A request to stop
+ * (base/signals.h) is noticed while the program waits for such a reader. */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdio.h>
+#include "app/options.h"
+#include <hifdm/problem.h>
+
+/* Checks the name of an output before the work begins; `path` may be NULL. Refuses a file that exists unless
+ * options->force, that is an input (`table`, options->result, or one of the case), or that cannot be written. Returns
+ * HF_OK, HF_EXISTS or HF_IO. */
+hf_status hf_output_check(const hf_options *options, const hf_problem *problem, const char *table, const char *path,
+                          hf_messages *messages);
 
 /* Writes all of the text [n] to a descriptor. Returns 0, or -1 with errno. errno is EINTR if the program was asked to
  * stop and nobody reads. */

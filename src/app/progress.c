@@ -13,7 +13,7 @@
 
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
 /* The time in s between two lines, for each hf_progress_mode. */
-static const double interval_s[] = {0, 0, 0.1, HF_PROGRESS_LOG_S, 1};
+static const double interval_s[] = {0, 0, 0.1, 30, 1};
 
 hf_progress hf_progress_on(FILE *file, hf_progress_mode mode)
 {
@@ -71,42 +71,40 @@ static void show_front(FILE *f, const hf_run_progress *now)
 static void show_json(FILE *f, const hf_run_progress *now)
 {
     hf_json j = {.file = f};
+    bool samples = now->phase == HF_RUN_TOLERANCE, front = now->points_all > 0, generations = now->generation > 0;
+    bool steps = now->phase == HF_RUN_REFINE && now->max_steps > 0;
     hf_json_open(&j, NULL, '{');
     hf_json_text(&j, "phase", hf_run_phase_word[now->phase]);
-    if (now->phase == HF_RUN_TOLERANCE) {
+    if (samples) {
         hf_json_integer(&j, "sample", now->samples);
         hf_json_integer(&j, "samples", now->samples_all);
         if (now->sigma_scale > 0)
             hf_json_number(&j, "sigma_scale", now->sigma_scale);
         else
             hf_json_number(&j, "samples_per_s", rate_per_s(now));
-        hf_json_number(&j, "elapsed_s", now->elapsed_s);
     }
-    if (now->points_all > 0) {
+    if (front) {
         hf_json_integer(&j, "point", now->points);
         hf_json_integer(&j, "points", now->points_all);
         hf_json_integer(&j, "steps", now->steps);
-        hf_json_number(&j, "elapsed_s", now->elapsed_s);
     }
-    if (now->phase == HF_RUN_REFINE && now->max_steps > 0) {
+    if (steps) {
         hf_json_integer(&j, "step", now->step);
         hf_json_integer(&j, "max_steps", now->max_steps);
-        hf_json_integer(&j, "evaluations", now->evaluations);
-        hf_json_number(&j, "best_psi_m", now->best_psi_m);
-        if (isfinite(now->merit)) hf_json_number(&j, "merit", now->merit);
-        hf_json_number(&j, "elapsed_s", now->elapsed_s);
-        hf_json_number(&j, "at_most_left_s", left_s(now));
     }
-    if (now->generation > 0) {
+    if (generations) {
         hf_json_integer(&j, "generation", now->generation);
         hf_json_integer(&j, "generations", now->generations);
         hf_json_integer(&j, "first_generation", now->first_generation);
+    }
+    if (steps || generations) {
         hf_json_integer(&j, "evaluations", now->evaluations);
         hf_json_number(&j, "best_psi_m", now->best_psi_m);
-        hf_json_number(&j, "evaluations_per_s", rate_per_s(now));
-        hf_json_number(&j, "elapsed_s", now->elapsed_s);
-        hf_json_number(&j, "at_most_left_s", left_s(now));
     }
+    if (steps && isfinite(now->merit)) hf_json_number(&j, "merit", now->merit);
+    if (generations) hf_json_number(&j, "evaluations_per_s", rate_per_s(now));
+    if (samples || front || steps || generations) hf_json_number(&j, "elapsed_s", now->elapsed_s);
+    if (steps || generations) hf_json_number(&j, "at_most_left_s", left_s(now));
     hf_json_close(&j, '}');
 }
 

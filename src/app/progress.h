@@ -10,13 +10,11 @@ typedef enum {
     HF_PROGRESS_AUTO, /* LINE on a terminal, LOG elsewhere */
     HF_PROGRESS_NONE,
     HF_PROGRESS_LINE, /* one line on a terminal, rewritten at most ten times a second */
-    HF_PROGRESS_LOG,  /* one line every HF_PROGRESS_LOG_S; shorter runs print nothing */
+    HF_PROGRESS_LOG,  /* one line every 30 s; shorter runs print nothing */
     HF_PROGRESS_JSONL /* one JSON object per line: when a phase begins, every second, and when it ends */
 } hf_progress_mode;
 
 extern const char *const hf_progress_word[6]; /* indexed by hf_progress_mode, NULL at the end */
-
-#define HF_PROGRESS_LOG_S 30.0 /* seconds between two lines of HF_PROGRESS_LOG */
 
 typedef struct {
     FILE *file;
