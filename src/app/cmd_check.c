@@ -1,9 +1,8 @@
 /* `hifdm check` reports whether a case is valid, and what a run of it would do: the solvers, the memory and about how
  * long it takes. */
-#include "app/cmd.h"
+#include "app/options.h"
 
 #include "app/cmd_check_study.h"
-#include "app/options.h"
 #include "net/symmetry.h"
 #include "out/print.h"
 #include "out/print_summary.h"

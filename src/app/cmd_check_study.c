@@ -20,10 +20,9 @@ static void print_axes(const hf_study *s, FILE *f)
 {
     for (int a = 0; a < s->n_axis; a++) {
         const hf_study_axis *axis = &s->axis[a];
-        char text[1024];
-        size_t used = 0;
-        for (int k = 0; k < axis->n_value && axis->n_value <= VALUES_TOLD && used < sizeof text; k++)
-            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", k ? ", " : "", value_of(axis, k));
+        char text[1024] = "";
+        for (int k = 0; k < axis->n_value && axis->n_value <= VALUES_TOLD; k++)
+            hf_text_append(text, sizeof text, ", ", value_of(axis, k), "");
         if (axis->n_value > VALUES_TOLD)
             snprintf(text, sizeof text, "%d values%s, %s .. %s", axis->n_value, axis->is_sampled ? ", sampled" : "",
                      value_of(axis, 0), value_of(axis, axis->n_value - 1));
@@ -77,17 +76,15 @@ static void print_left(const hf_study *s, const int count[HF_N_POINT_STATE], dou
 {
     static const hf_point_state other[] = {HF_POINT_FAILED, HF_POINT_OUTDATED, HF_POINT_RUNNING};
     int n_missing = count[HF_POINT_MISSING], n_anew = count[HF_POINT_FAILED] + count[HF_POINT_OUTDATED];
-    char told[128] = "", retry[64] = "";
-    size_t n_told = 0, n_retry = 0;
+    char told[128] = "", retry[64] = "", item[32];
     if (n_missing) print_time(n_missing, "", each_s, threads, s->has_tolerance, f);
-    if (n_missing && n_anew) n_retry += (size_t)snprintf(retry, sizeof retry, "%s", hf_point_state_word[0]);
+    if (n_missing && n_anew) strcpy(retry, hf_point_state_word[0]);
     for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
         const char *word = hf_point_state_word[other[k]];
         if (!count[other[k]]) continue;
-        n_told +=
-            (size_t)snprintf(told + n_told, sizeof told - n_told, "%s%d %s", n_told ? ", " : "", count[other[k]], word);
-        if (other[k] != HF_POINT_RUNNING)
-            n_retry += (size_t)snprintf(retry + n_retry, sizeof retry - n_retry, "%s%s", n_retry ? "," : "", word);
+        snprintf(item, sizeof item, "%d %s", count[other[k]], word);
+        hf_text_append(told, sizeof told, ", ", item, "");
+        if (other[k] != HF_POINT_RUNNING) hf_text_append(retry, sizeof retry, ",", word, "");
     }
     if (n_anew)
         hf_print_line(f, "%s%s: `hifdm sweep %s --retry %s`%s", n_missing ? "" : "nothing is missing; ", told, s->path,

@@ -1,7 +1,6 @@
 /* `hifdm diff` compares two result files, data set by data set. */
-#include "app/cmd.h"
-
 #include "app/options.h"
+
 #include "out/print.h"
 #include "store/compare.h"
 

@@ -2,9 +2,8 @@
  *
  *     words of the command line -> exit status? -> entries of that word -> keys of the case file -> similar entries
  *                               -> nothing found: a suggestion, or one term after the other */
-#include "app/cmd.h"
-
 #include "app/cmd_help.h"
+
 #include "base/text.h"
 #include "out/print.h"
 #include "out/words.h"

@@ -54,11 +54,7 @@ static void man_command(const hf_command *c, FILE *f)
         const hf_option o = hf_option_at(i);
         if (!hf_option_goes_with(&o, c) || !o.commands) continue;
         fputs(".TP\n", f);
-        if (o.letter) {
-            fputs("\\fB", f);
-            put_roff(o.letter, f);
-            fputs("\\fR, ", f);
-        }
+        if (o.letter) fprintf(f, "\\fB\\%s\\fR, ", o.letter); /* "-o" with its hyphen escaped */
         put_line("", o.name, hf_help_space_before(o.argument), o.argument, f);
         put_paragraph("", o.help, f);
     }
@@ -128,13 +124,14 @@ void hf_help_man(FILE *f)
     put_roff("passive, with GOMP_SPINCOUNT=2000, unless one of them is set: threads that spin for long while they wait "
              "for one that is not running lose more than they gain.\n",
              f);
-    fputs(".SH SEE ALSO\n", f);
-    put_roff("Chen, Dong, Song, Chen, Li, Form-Finding Analysis of Mesh Reflector of Large Parabolic Cylindrical "
-             "Antenna, Aerospace 2022, 9, 239: the equations that are cited by number.\n",
-             f);
-    fputs(".PP\n", f);
-    put_roff("In the source: src/manual (a page for each question), src/METHOD.md "
-             "(the mathematics), src/ARCHITECTURE.md. make help lists the targets there: make api for pages of the "
-             "library's interface, make literal for the paper's evaluation of an individual beside the default.\n",
-             f);
+    put_paragraph(".SH SEE ALSO\n",
+                  "Chen, Dong, Song, Chen, Li, Form-Finding Analysis of Mesh Reflector of Large Parabolic Cylindrical "
+                  "Antenna, Aerospace 2022, 9, 239: the equations that are cited by number.",
+                  f);
+    put_paragraph(
+        ".PP\n",
+        "In the source: src/manual (a page for each question), src/METHOD.md "
+        "(the mathematics), src/ARCHITECTURE.md. make help lists the targets there: make api for pages of the "
+        "library's interface, make literal for the paper's evaluation of an individual beside the default.",
+        f);
 }

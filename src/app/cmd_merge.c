@@ -1,7 +1,6 @@
 /* `hifdm merge` collects the points of a study in one file. */
-#include "app/cmd.h"
-
 #include "app/study_files.h"
+
 #include "out/print.h"
 #include "store/merge.h"
 

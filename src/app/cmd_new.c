@@ -1,13 +1,10 @@
 /* `hifdm new` writes a new case: commented, complete, and ready to run. */
-#include "app/cmd.h"
-
 #include "app/options.h"
+
 #include "base/file_out.h"
 #include "out/print.h"
 
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* ---- the texts: '@' stands for the name ---- */
 

@@ -1,8 +1,7 @@
 /* `hifdm recover` adds the generations in the journal of an unfinished result to the result file. It does not resume
  * the run. */
-#include "app/cmd.h"
-
 #include "app/options.h"
+
 #include <hifdm/store.h>
 
 static hf_status command_recover(const hf_options *o, FILE *file, hf_messages *messages)

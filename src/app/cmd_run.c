@@ -1,7 +1,6 @@
 /* `hifdm run` computes one case and writes its result file. */
 #include "app/cmd_run.h"
 
-#include "app/options.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "base/signals.h"

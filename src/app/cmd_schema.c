@@ -88,8 +88,10 @@ static void print_list(const hf_list *list, FILE *f)
     fprintf(f, "%*s%s: []\n", indent, "", last_word(list->path));
 }
 
-static void print_schema(FILE *f)
+static hf_status command_schema(const hf_options *o, FILE *f, hf_messages *messages)
 {
+    (void)o;
+    (void)messages;
     const hf_field *field = hf_field_table;
     const hf_section *section = hf_section_table;
     fputs("# Every key of a hifdm case file, with its default. Units are the last part of a name.\n", f);
@@ -108,13 +110,6 @@ static void print_schema(FILE *f)
         fputc('\n', f);
         print_list(&hf_list_table[i], f);
     }
-}
-
-static hf_status command_schema(const hf_options *o, FILE *file, hf_messages *messages)
-{
-    (void)o;
-    (void)messages;
-    print_schema(file);
     return HF_OK;
 }
 

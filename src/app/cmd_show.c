@@ -1,8 +1,6 @@
 /* `hifdm show` prints the summary of a result file, or the table of a merged study. */
-#include "app/cmd.h"
-
-#include "app/options.h"
 #include "app/output.h"
+
 #include "base/path.h"
 #include "case/study.h"
 #include "out/print_study.h"

@@ -1,7 +1,6 @@
 /* `hifdm status` prints how many points of a study are in each state, and why points failed. */
-#include "app/cmd.h"
-
 #include "app/study_files.h"
+
 #include "base/json.h"
 #include "out/print.h"
 

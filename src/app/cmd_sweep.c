@@ -1,9 +1,8 @@
 /* `hifdm sweep` runs the missing points of a study, on all cores.
  *
  * Contents: which points - progress - the command */
-#include "app/cmd.h"
-
 #include "app/study_files.h"
+
 #include "base/file_io.h"
 #include "base/signals.h"
 #include "base/text.h"
@@ -85,18 +84,14 @@ static void show_points(void *context, const hf_sweep_count *n)
 
 /* ---- the command ---- */
 
-static hf_status sweep_study(const hf_sweep_request *request, bool quiet, FILE *file, hf_messages *messages)
+/* Runs the points and prints how many. request->observer is NULL with --quiet. */
+static hf_status sweep_study(const hf_sweep_request *request, FILE *file, hf_messages *messages)
 {
-    teller t = {.on_terminal = isatty(STDERR_FILENO)};
-    hf_sweep_request told = *request;
+    const teller *t = request->observer_context;
     hf_sweep_count n;
-    if (!quiet) {
-        told.observer = show_points;
-        told.observer_context = &t;
-    }
-    hf_status status = hf_sweep_run(&told, &n, messages);
-    if (quiet || !n.has_run) return status;
-    if (t.on_terminal && hf_file_io_await_room(STDERR_FILENO, 0)) fputs("\r\033[K", stderr);
+    hf_status status = hf_sweep_run(request, &n, messages);
+    if (!request->observer || !n.has_run) return status;
+    if (t->on_terminal && hf_file_io_await_room(STDERR_FILENO, 0)) fputs("\r\033[K", stderr);
     hf_print_line(file, "%d point%s run in %s on %d thread%s, %d of them failed; results in %s", n.n_done + n.n_failed,
                   n.n_done + n.n_failed == 1 ? "" : "s", hf_print_duration(n.wall_s).text, request->threads,
                   request->threads == 1 ? "" : "s", n.n_failed, request->folder);
@@ -107,17 +102,20 @@ static hf_status command_sweep(const hf_options *o, FILE *file, hf_messages *mes
 {
     char folder[HF_PATH_SIZE];
     static hf_study study;
+    teller t = {.on_terminal = isatty(STDERR_FILENO)};
     hf_sweep_request request = {.study = &study,
                                 .folder = folder,
                                 .retry = o->retry,
                                 .threads = o->threads ? o->threads : hf_batch_default_threads(),
                                 .argc = o->argc,
                                 .argv = o->argv,
-                                .stop_requested = hf_signals_watch()};
+                                .stop_requested = hf_signals_watch(),
+                                .observer = o->quiet ? NULL : show_points,
+                                .observer_context = &t};
     HF_TRY(choose_task(o, &request.task, &request.tasks, messages));
     HF_TRY(hf_study_files_name(o->folder, o->file, ".d", folder, messages));
     hf_status status = hf_study_read(o->file, &study, messages);
-    if (status == HF_OK) status = sweep_study(&request, o->quiet, file, messages);
+    if (status == HF_OK) status = sweep_study(&request, file, messages);
     hf_study_free(&study);
     return status;
 }

@@ -3,7 +3,6 @@
  *
  *     command line -> options -> a copy of the program, if the command reads results -> libraries -> command
  *                  -> messages -> standard output is closed -> exit status */
-#include "app/options.h"
 #include "app/output.h"
 #include "app/reader.h"
 

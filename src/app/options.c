@@ -241,21 +241,15 @@ hf_option hf_option_at(int i)
     return option;
 }
 
-/* Returns true if `word` is one of the words, which are separated by blanks. */
-static bool is_listed(const char *words, const char *word)
-{
-    size_t length = strlen(word);
-    for (const char *p = words; *p;) {
-        size_t n = strcspn(p, " ");
-        if (n == length && !strncmp(p, word, n)) return true;
-        p += n + (p[n] == ' ');
-    }
-    return false;
-}
-
 bool hf_option_goes_with(const hf_option *option, const hf_command *command)
 {
-    return !option->commands || is_listed(option->commands, command->name);
+    size_t length = strlen(command->name);
+    for (const char *p = option->commands; p && *p;) {
+        size_t n = strcspn(p, " ");
+        if (n == length && !strncmp(p, command->name, n)) return true;
+        p += n + (p[n] == ' ');
+    }
+    return !option->commands;
 }
 
 /* ---- reading a command line ---- */
