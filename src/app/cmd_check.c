@@ -340,17 +340,6 @@ static void print_refine_time(const hf_check *c, FILE *f)
                 c->problem.model.n_leader);
 }
 
-/* Prints the times that the trials found. */
-static void print_times(const hf_check *c, FILE *f)
-{
-    print_form_time(c, f);
-    print_tolerance_time(c, f);
-    if (!isnan(c->design_s))
-        fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
-                hf_print_duration(c->design_s).text, hf_solver_word[c->solver], hf_print_duration(c->search_s).text);
-    if (!isnan(c->step_s)) print_refine_time(c, f);
-}
-
 hf_status hf_cmd_check_case(const hf_check_request *request, const char *name, hf_check *c, FILE *f,
                             hf_messages *messages)
 {
@@ -363,7 +352,12 @@ hf_status hf_cmd_check_case(const hf_check_request *request, const char *name, h
     print_plan(c, f);
     print_memory(c, f);
     hf_status status = hf_check_try(c, messages);
-    print_times(c, f);
+    print_form_time(c, f);
+    print_tolerance_time(c, f);
+    if (!isnan(c->design_s))
+        fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
+                hf_print_duration(c->design_s).text, hf_solver_word[c->solver], hf_print_duration(c->search_s).text);
+    if (!isnan(c->step_s)) print_refine_time(c, f);
     return status;
 }
 

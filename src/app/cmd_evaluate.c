@@ -206,13 +206,6 @@ static void write_figure(const hf_result_field *field, const hf_form_result *r, 
         fprintf(f, ",%d", *(const int *)value);
 }
 
-/* Writes the objectives of a design. A design that only breaks a limit has a shape, and therefore objectives. */
-static void write_objectives(const hf_objectives *objectives, const hf_form_result *r, FILE *f)
-{
-    for (int k = 0; k < objectives->n_objective; k++)
-        write_number(hf_status_has_shape(r->status) ? r->objective[k] : (double)NAN, f);
-}
-
 static void write_results(const void *context, FILE *f)
 {
     const job *j = context;
@@ -231,7 +224,9 @@ static void write_results(const void *context, FILE *f)
         write_row_id(j, i, f);
         for (int k = 0; k < n_field; k++)
             write_figure(field[k], &j->result[i], f);
-        write_objectives(objectives, &j->result[i], f);
+        /* A design that only breaks a limit has a shape, and therefore objectives. */
+        for (int k = 0; k < objectives->n_objective; k++)
+            write_number(hf_status_has_shape(j->result[i].status) ? j->result[i].objective[k] : (double)NAN, f);
         fputc('\n', f);
     }
 }

@@ -113,11 +113,6 @@ static bool minimises_psi(const hf_summary *s)
     return false;
 }
 
-static bool is_psi_all(const hf_summary *s)
-{
-    return s->objectives.n == 1 && minimises_psi(s);
-}
-
 /* Prints the objectives of the form-finding and of the result, in their units: "facets 1.7436 -> 1.4720 mm". */
 static void print_objectives_gained(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
@@ -186,7 +181,8 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         print_front_answer(s, f);
         return;
     }
-    if ((has_merit(s) || s->taken.point) && stage != HF_STAGE_FORM && !is_psi_all(s)) {
+    bool is_psi_all = s->objectives.n == 1 && minimises_psi(s);
+    if ((has_merit(s) || s->taken.point) && stage != HF_STAGE_FORM && !is_psi_all) {
         print_objectives_gained(s, r, f);
     } else if (r->status == HF_OK && !isfinite(r->psi_m)) { /* loose nodes have no psi: their positions were assigned */
         fputs("no psi: no taut cable holds an inner node", f);
@@ -200,12 +196,6 @@ void hf_print_answer(const hf_summary *s, FILE *f)
 }
 
 /* ---- the table of stages ---- */
-
-static void print_table_head(const hf_summary *s, FILE *f)
-{
-    fprintf(f, "  %-13s %9s  %14s  %12s%s  %9s  %s\n", "stage", "psi mm", "boundary ratio", "ratio inside",
-            has_merit(s) ? "         merit" : "", "at bounds", "certified to");
-}
 
 static void print_bound(const hf_form_result *r, FILE *f)
 {
@@ -293,7 +283,8 @@ static void print_refine(const hf_summary *s, bool is_result, FILE *f)
 
 static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
 {
-    print_table_head(s, f);
+    fprintf(f, "  %-13s %9s  %14s  %12s%s  %9s  %s\n", "stage", "psi mm", "boundary ratio", "ratio inside",
+            has_merit(s) ? "         merit" : "", "at bounds", "certified to");
     print_figures(s, "form", &s->stage[HF_STAGE_FORM].result, -1, f);
     fputs("  ", f);
     hf_print_iterations(&s->stage[HF_STAGE_FORM].result, f);

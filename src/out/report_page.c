@@ -4,22 +4,17 @@
 #include "base/text.h"
 #include <string.h>
 
-static void write_html(const char *text, FILE *f)
-{
-    for (; *text; text++) {
-        if (*text == '&' || *text == '<' || *text == '>')
-            fprintf(f, "&#%d;", *text);
-        else
-            fputc(*text, f);
-    }
-}
-
 /* Writes text of any origin. Hidden characters become visible, and nothing becomes markup. */
 static void write_text(const char *text, FILE *f)
 {
     char shown[4096];
     hf_text_escape(text, shown, sizeof shown);
-    write_html(shown, f);
+    for (const char *p = shown; *p; p++) {
+        if (*p == '&' || *p == '<' || *p == '>')
+            fprintf(f, "&#%d;", *p);
+        else
+            fputc(*p, f);
+    }
 }
 
 void hf_report_page_write(const void *page, FILE *f)
