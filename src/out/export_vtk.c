@@ -97,16 +97,6 @@ static void put_fields(hf_hdf5 *io, const char *path, const fields *list, int n)
     hf_hdf5_close(io, group);
 }
 
-static void put_grid(hf_hdf5 *io, const grid *g)
-{
-    hf_vtkhdf_put_cells(io, &(hf_vtkhdf_cells){g->n_point, g->n_cell, g->corner, g->offset, g->type});
-    hid_t group = hf_hdf5_open_group(io, "/VTKHDF");
-    put(io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
-    hf_hdf5_close(io, group);
-    put_fields(io, "/VTKHDF/PointData", &g->point, g->n_point);
-    put_fields(io, "/VTKHDF/CellData", &g->cell, g->n_cell);
-}
-
 /* Writes the file `name` in the folder of the request. */
 static hf_status write_grid(const hf_export_request *o, const char *name, const grid *g, hf_messages *messages)
 {
@@ -116,7 +106,12 @@ static hf_status write_grid(const hf_export_request *o, const char *name, const 
     HF_TRY(hf_file_out_set_begin(o->files, path, &out, messages));
     hf_hdf5 io = {.path = path, .messages = messages, .status = HF_OK, .file = -1};
     hf_hdf5_create_file(&io, out);
-    put_grid(&io, g);
+    hf_vtkhdf_put_cells(&io, &(hf_vtkhdf_cells){g->n_point, g->n_cell, g->corner, g->offset, g->type});
+    hid_t group = hf_hdf5_open_group(&io, "/VTKHDF");
+    put(&io, group, &(field){"Points", "m", HF_KIND_REAL, 3, g->position_m}, g->n_point);
+    hf_hdf5_close(&io, group);
+    put_fields(&io, "/VTKHDF/PointData", &g->point, g->n_point);
+    put_fields(&io, "/VTKHDF/CellData", &g->cell, g->n_cell);
     hf_hdf5_close_file(&io);
     return io.status;
 }

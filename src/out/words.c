@@ -107,13 +107,6 @@ static bool read_attribute(reading *r, hf_word *w, const char *line)
     return values != NULL;
 }
 
-static void read_text(reading *r, hf_word *w, const char *line)
-{
-    if (r->text) r->end[-1] = r->is_gap ? '\n' : ' ';
-    char *kept = keep(r, line, strlen(line));
-    if (!r->text) w->text = r->text = kept;
-}
-
 /* Returns false if the line breaks a rule. */
 static bool read_line(reading *r, const char *line)
 {
@@ -127,10 +120,13 @@ static bool read_line(reading *r, const char *line)
         return is_whole;
     }
     if (w && (rest = after(line, "- ")) != NULL) return !r->text && read_attribute(r, w, rest);
-    if (w && *line)
-        read_text(r, w, line);
-    else if (*line && r->section && !r->kind)
+    if (w && *line) {
+        if (r->text) r->end[-1] = r->is_gap ? '\n' : ' ';
+        char *kept = keep(r, line, strlen(line));
+        if (!r->text) w->text = r->text = kept;
+    } else if (*line && r->section && !r->kind) {
         r->kind = *line == '`' ? keep(r, line + 1, strcspn(line + 1, "`")) : "";
+    }
     r->is_gap = !*line;
     return true;
 }
