@@ -295,31 +295,31 @@ const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
 
 /* ---- lists of rows ---- */
 
-#define IN(member) offsetof(hf_variable_settings, member)
-_Static_assert(IN(range_ratio) == IN(range) + sizeof(double) && IN(upper) == IN(lower) + sizeof(double),
+#define IN(row, member) offsetof(hf_##row##_settings, member)
+
+_Static_assert(IN(variable, range_ratio) == IN(variable, range) + sizeof(double) &&
+                   IN(variable, upper) == IN(variable, lower) + sizeof(double),
                "a range is an amount, bounds are bounds");
 static const hf_field variable_field[] = {
-    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
+    {"set", HF_FIELD_TEXT, IN(variable, set), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
      "Cables that vary, or cables whose supports vary: a set of the net, or inner, boundary, all"},
-    {"vary", HF_FIELD_WORD, IN(vary), 0, 0, NULL, "", hf_vary_word,
+    {"vary", HF_FIELD_WORD, IN(variable, vary), 0, 0, NULL, "", hf_vary_word,
      "Quantity that varies. With tension (N), force_density (N/m) or length (m), the cable keeps the value. "
      "unstressed_length (m) is for cables with law elastic. support_z, support_normal and support_xyz (m) displace "
      "the supports at the ends of the cables along z, along the normal of the target surface, or in all three "
      "directions"},
-    {"range", HF_FIELD_AMOUNT, IN(range), HF_ABOVE_ZERO, BIG, "", "", NULL,
+    {"range", HF_FIELD_AMOUNT, IN(variable, range), HF_ABOVE_ZERO, BIG, "", "", NULL,
      "Maximum change from the value after form-finding, in the unit of the quantity or in per cent of the value. "
      "Default: as far as the bounds allow"},
-    {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, "", "", NULL,
+    {"bounds", HF_FIELD_BOUNDS, IN(variable, lower), -BIG, BIG, "", "", NULL,
      "Lower and upper bound, in the unit of the quantity. Default: none"},
-    {"link", HF_FIELD_WORD, IN(link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry"),
+    {"link", HF_FIELD_WORD, IN(variable, link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry"),
      "Variables that change together. With each, every cable changes on its own. With set, all cables of the row "
      "change by the same amount. With symmetry, mirror images change by the same amount (optimize.symmetry)"},
 };
-#undef IN
 
-#define IN(member) offsetof(hf_objective_settings, member)
 static const hf_field objective_field[] = {
-    {"figure", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_figure_kind_word,
+    {"figure", HF_FIELD_WORD, IN(objective, figure), 0, 0, NULL, "", hf_figure_kind_word,
      "psi: RMS distance of the inner nodes to their target positions (m); surface: RMS distance of the inner nodes "
      "to the target surface (m); facets: RMS distance of the facets to the target surface (m); tension, length: RMS "
      "difference from target over the set (N, m); evenness: standard deviation of the tensions of the set divided by "
@@ -327,148 +327,134 @@ static const hf_field objective_field[] = {
      "attachment (m); mass: mass of the cables of the set (kg); ratio: maximum tension of the set divided by its "
      "minimum tension; gain: square root of the fraction of the gain that the shape loses in the direction of the "
      "beam, by physical optics (surface.pattern)"},
-    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
+    {"set", HF_FIELD_TEXT, IN(objective, set), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "Cables of tension, length, evenness, mass and ratio. Default: all"},
-    {"target", HF_FIELD_DOUBLE, IN(target), -BIG, BIG, "", "", NULL,
+    {"target", HF_FIELD_DOUBLE, IN(objective, target), -BIG, BIG, "", "", NULL,
      "Target of tension (N, required) or of length (m). Default for length: the lengths at the target positions"},
-    {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
+    {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(objective, mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
      "Mass of the cables per metre, required for the figure mass"},
-    {"along", HF_FIELD_WORD, IN(along), 0, 0, "normal", "", HF_WORDS("normal", "half_path"),
+    {"along", HF_FIELD_WORD, IN(objective, along), 0, 0, "normal", "", HF_WORDS("normal", "half_path"),
      "Distance that surface and facets measure. normal is the distance along the normal. half_path is half the "
      "change of the path of a ray"},
-    {"fit", HF_FIELD_WORD, IN(fit), 0, 0, "none", "", HF_WORDS("none", "best"),
+    {"fit", HF_FIELD_WORD, IN(objective, fit), 0, 0, "none", "", HF_WORDS("none", "best"),
      "Reference for surface and facets: the target surface itself, or its best fit to the shape"},
-    {"frequency_Hz", HF_FIELD_DOUBLE, IN(frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
+    {"frequency_Hz", HF_FIELD_DOUBLE, IN(objective, frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
      "Frequency of the figure gain. Default: the highest of surface.frequencies_Hz"},
-    {"load_case", HF_FIELD_TEXT, IN(load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
+    {"load_case", HF_FIELD_TEXT, IN(objective, load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "Name of the load case in which the figure is computed on the as-built net. all computes the figure in all load "
      "cases"},
-    {"over", HF_FIELD_WORD, IN(over), 0, 0, "design", "", hf_over_word,
+    {"over", HF_FIELD_WORD, IN(objective, over), 0, 0, "design", "", hf_over_word,
      "Nets from which the figure is computed: the design itself, or samples with the errors of `tolerance`"},
-    {"take", HF_FIELD_WORD, IN(take), 0, 0, "mean", "", hf_take_word,
+    {"take", HF_FIELD_WORD, IN(objective, take), 0, 0, "mean", "", hf_take_word,
      "Combination of the values of all load cases or samples. mean is their RMS value, and worst is their maximum"},
-    {"quantile", HF_FIELD_DOUBLE, IN(quantile), HF_ABOVE_ZERO, 1, "", "", NULL,
+    {"quantile", HF_FIELD_DOUBLE, IN(objective, quantile), HF_ABOVE_ZERO, 1, "", "", NULL,
      "Quantile over the samples, in place of take. This fraction of the samples has no larger value. Only the method "
      "ga supports this key"},
-    {"weight", HF_FIELD_DOUBLE, IN(weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
+    {"weight", HF_FIELD_DOUBLE, IN(objective, weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
      "Weight of this objective in the merit of a design, the square root of the sum of (weight * value)^2"},
 };
-#undef IN
 
-#define IN(member) offsetof(hf_limit_settings, member)
-_Static_assert(IN(upper) == IN(lower) + sizeof(double), "bounds are bounds");
+_Static_assert(IN(limit, upper) == IN(limit, lower) + sizeof(double), "bounds are bounds");
 static const hf_field limit_field[] = {
-    {"figure", HF_FIELD_WORD, IN(figure), 0, 0, NULL, "", hf_limit_word,
+    {"figure", HF_FIELD_WORD, IN(limit, figure), 0, 0, NULL, "", hf_limit_word,
      "tension limits the tension of each cable of the set (N). ratio limits the maximum tension of the set divided "
      "by its minimum tension. deflection limits the deflection of the truss at each attachment (m)"},
-    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL, "Cables of tension and ratio. Default: all"},
-    {"bounds", HF_FIELD_BOUNDS, IN(lower), -BIG, BIG, NULL, "", NULL, "Lower and upper bound"},
+    {"set", HF_FIELD_TEXT, IN(limit, set), 1, HF_SET_NAME_SIZE, "", "", NULL,
+     "Cables of tension and ratio. Default: all"},
+    {"bounds", HF_FIELD_BOUNDS, IN(limit, lower), -BIG, BIG, NULL, "", NULL, "Lower and upper bound"},
 };
-#undef IN
 
-#define IN(member) offsetof(hf_cable_settings, member)
 static const hf_field cable_field[] = {
-    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "all", "", NULL,
+    {"set", HF_FIELD_TEXT, IN(cable, set), 1, HF_SET_NAME_SIZE, "all", "", NULL,
      "Cables of the row: a set of the net, or inner, boundary, all"},
-    {"expansion_per_K", HF_FIELD_DOUBLE, IN(expansion_per_K), -1, 1, "", "1/K", NULL,
+    {"expansion_per_K", HF_FIELD_DOUBLE, IN(cable, expansion_per_K), -1, 1, "", "1/K", NULL,
      "Thermal expansion of the cables. 0: no expansion"},
-    {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(mass_kg_per_m), 0, 1e6, "", "kg/m", NULL,
+    {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(cable, mass_kg_per_m), 0, 1e6, "", "kg/m", NULL,
      "Mass of the cables per metre of unstressed length"},
 };
-#undef IN
 
-#define IN(member) offsetof(hf_node_settings, member)
 static const hf_field node_field[] = {
-    {"role", HF_FIELD_WORD, IN(role), 0, 0, "all", "", hf_nodes_word, "Nodes of the row: the nodes of a role, or all"},
-    {"mass_kg", HF_FIELD_DOUBLE, IN(mass_kg), 0, 1e6, NULL, "kg", NULL, "Mass of each node"},
+    {"role", HF_FIELD_WORD, IN(node, role), 0, 0, "all", "", hf_nodes_word,
+     "Nodes of the row: the nodes of a role, or all"},
+    {"mass_kg", HF_FIELD_DOUBLE, IN(node, mass_kg), 0, 1e6, NULL, "kg", NULL, "Mass of each node"},
 };
-#undef IN
 
-#define IN(member) offsetof(hf_load_case_settings, member)
 static const hf_field load_case_field[] = {
-    {"name", HF_FIELD_TEXT, IN(name), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
+    {"name", HF_FIELD_TEXT, IN(load_case, name), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
      "Name of the load case, of letters, digits, _ and -. Rows with the same name form one load case"},
-    {"set", HF_FIELD_TEXT, IN(set), 1, HF_SET_NAME_SIZE, "", "", NULL,
+    {"set", HF_FIELD_TEXT, IN(load_case, set), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "Cables to which the temperature applies: a set of the net, or inner, boundary, all"},
-    {"part", HF_FIELD_WORD, IN(part), 0, 0, "all", "", hf_part_word,
+    {"part", HF_FIELD_WORD, IN(load_case, part), 0, 0, "all", "", hf_part_word,
      "Part to which the temperature applies: net and truss, all cables, the whole truss, or the members of one truss "
      "unit"},
-    {"temperature_K", HF_FIELD_DOUBLE, IN(temperature_K), -1e4, 1e4, "", "K", NULL,
+    {"temperature_K", HF_FIELD_DOUBLE, IN(load_case, temperature_K), -1e4, 1e4, "", "K", NULL,
      "Difference from the temperature at which the cables were cut and the truss was made. If several rows of a load "
      "case give the temperature of a part, the last row applies"},
-    {"gradient_K_per_m", HF_FIELD_VECTOR, IN(gradient_K_per_m), -1e4, 1e4, "", "K/m", NULL,
+    {"gradient_K_per_m", HF_FIELD_VECTOR, IN(load_case, gradient_K_per_m), -1e4, 1e4, "", "K/m", NULL,
      "Temperature gradient. It adds to temperature_K, in proportion to the distance from the origin"},
-    {"gravity_m_per_s2", HF_FIELD_DOUBLE, IN(gravity_m_per_s2), HF_ABOVE_ZERO, 1e6, "", "m/s2", NULL,
+    {"gravity_m_per_s2", HF_FIELD_DOUBLE, IN(load_case, gravity_m_per_s2), HF_ABOVE_ZERO, 1e6, "", "m/s2", NULL,
      "Acceleration of gravity, for the weight of cables, nodes and truss"},
-    {"direction", HF_FIELD_VECTOR, IN(direction), -1e9, 1e9, "", "", NULL,
+    {"direction", HF_FIELD_VECTOR, IN(load_case, direction), -1e9, 1e9, "", "", NULL,
      "Direction of gravity, a vector of any length. Default: [0, 0, -1]"},
-    {"force_N", HF_FIELD_VECTOR, IN(force_N), -1e12, 1e12, "", "N", NULL, "Force on each node of the role"},
-    {"role", HF_FIELD_WORD, IN(role), 0, 0, "all", "", hf_nodes_word, "Nodes on which force_N acts"},
-    {"support_displacement_m", HF_FIELD_VECTOR, IN(support_displacement_m), -1e6, 1e6, "", "m", NULL,
+    {"force_N", HF_FIELD_VECTOR, IN(load_case, force_N), -1e12, 1e12, "", "N", NULL, "Force on each node of the role"},
+    {"role", HF_FIELD_WORD, IN(load_case, role), 0, 0, "all", "", hf_nodes_word, "Nodes on which force_N acts"},
+    {"support_displacement_m", HF_FIELD_VECTOR, IN(load_case, support_displacement_m), -1e6, 1e6, "", "m", NULL,
      "Displacement of all supports from their positions in the design. On a truss, the displacement from the "
      "positions that the truss gives them"},
-    {"nodes", HF_FIELD_TEXT, IN(nodes_path), 1, HF_PATH_SIZE, "", "", NULL,
+    {"nodes", HF_FIELD_TEXT, IN(load_case, nodes_path), 1, HF_PATH_SIZE, "", "", NULL,
      "CSV id[,Fx_N,Fy_N,Fz_N][,dx_m,dy_m,dz_m] with forces on nodes and displacements of supports. The path is "
      "relative to the case file"},
 };
-#undef IN
 
-#define IN(member) offsetof(hf_require_settings, member)
 static const hf_field require_field[] = {
-    {"measure", HF_FIELD_WORD, IN(measure), 0, 0, NULL, "", hf_tolerance_measure_word,
+    {"measure", HF_FIELD_WORD, IN(require, measure), 0, 0, NULL, "", hf_tolerance_measure_word,
      "Figure of each as-built net. Surface figures need a section surface, and facet figures a net with facets. "
      "Losses by Ruze's formula (...gain_loss_dB) need surface.frequencies_Hz, and pattern_loss_dB needs "
      "surface.pattern. Figures with fit_ are those after the best fit, that is, after the reflector has been pointed "
      "and focused again"},
-    {"at_most", HF_FIELD_DOUBLE, IN(at_most), -BIG, BIG, "", "", NULL, "Maximum allowed value"},
-    {"at_least", HF_FIELD_DOUBLE, IN(at_least), -BIG, BIG, "", "", NULL, "Minimum allowed value"},
+    {"at_most", HF_FIELD_DOUBLE, IN(require, at_most), -BIG, BIG, "", "", NULL, "Maximum allowed value"},
+    {"at_least", HF_FIELD_DOUBLE, IN(require, at_least), -BIG, BIG, "", "", NULL, "Minimum allowed value"},
 };
-#undef IN
 
-#define IN(member) offsetof(hf_truss_heat_settings, member)
 static const hf_field truss_heat_field[] = {
-    {"part", HF_FIELD_WORD, IN(part), 0, 0, NULL, "", hf_part_word + HF_PART_TRUSS,
+    {"part", HF_FIELD_WORD, IN(truss_heat, part), 0, 0, NULL, "", hf_part_word + HF_PART_TRUSS,
      "Members to which this temperature applies: the whole truss, or one truss unit"},
-    {"sigma_temperature_K", HF_FIELD_DOUBLE, IN(sigma_temperature_K), HF_ABOVE_ZERO, 1000, NULL, "K", NULL,
+    {"sigma_temperature_K", HF_FIELD_DOUBLE, IN(truss_heat, sigma_temperature_K), HF_ABOVE_ZERO, 1000, NULL, "K", NULL,
      "Standard deviation of this temperature. This key requires truss.expansion_per_K"},
 };
+
 #undef IN
 
-#define N_KEY(keys) (int)(sizeof keys / sizeof *keys)
-#define LIST(name, count, row, max_row, keys, n_key, help)                                                             \
+/* `less` is the number of last keys that the rows of this list do not have. */
+#define LIST(name, count, row, max_row, keys, less, help)                                                              \
     {                                                                                                                  \
-        name, AT(count), AT(row), sizeof(((hf_case *)0)->row[0]), max_row, keys, n_key, help                           \
+        name, AT(count), AT(row), sizeof(((hf_case *)0)->row[0]), max_row, keys,                                       \
+            (int)(sizeof keys / sizeof *keys) - less, help                                                             \
     }
 const hf_list hf_list_table[] = {
-    LIST("optimize.variables", optimize.n_variable_row, optimize.variable_row, HF_DESIGN_ROWS_MAX, variable_field,
-         N_KEY(variable_field),
+    LIST("optimize.variables", optimize.n_variable_row, optimize.variable_row, HF_DESIGN_ROWS_MAX, variable_field, 0,
          "Design variables. Without rows, the pretensions of the boundary cables vary within range_N, and rule "
          "determines how they act"),
-    LIST("optimize.objective", optimize.n_term, optimize.term, HF_DESIGN_ROWS_MAX, objective_field,
-         N_KEY(objective_field),
+    LIST("optimize.objective", optimize.n_term, optimize.term, HF_DESIGN_ROWS_MAX, objective_field, 0,
          "Objectives, which the merit of a design combines. Without rows, the objective is "
          "psi"),
     /* A row of optimize.front has the keys of a row of optimize.objective without the last one, weight. */
-    LIST("optimize.front", optimize.n_front, optimize.front, HF_FRONT_OBJECTIVES_MAX, objective_field,
-         N_KEY(objective_field) - 1,
+    LIST("optimize.front", optimize.n_front, optimize.front, HF_FRONT_OBJECTIVES_MAX, objective_field, 1,
          "Two or three objectives of a Pareto front. The run then finds the front instead of one design. No other "
          "design dominates a design of the front"),
-    LIST("optimize.limits", optimize.n_limit, optimize.limit, HF_DESIGN_ROWS_MAX, limit_field, N_KEY(limit_field),
+    LIST("optimize.limits", optimize.n_limit, optimize.limit, HF_DESIGN_ROWS_MAX, limit_field, 0,
          "Limits that a design must satisfy. Without rows, there are none"),
-    LIST("cables", built.n_cable, built.cable, HF_MATERIAL_ROWS_MAX, cable_field, N_KEY(cable_field),
+    LIST("cables", built.n_cable, built.cable, HF_MATERIAL_ROWS_MAX, cable_field, 0,
          "Material of the cables of the as-built net. A later row replaces the values of an earlier row"),
-    LIST("nodes", built.n_node, built.node, HF_MATERIAL_ROWS_MAX, node_field, N_KEY(node_field),
+    LIST("nodes", built.n_node, built.node, HF_MATERIAL_ROWS_MAX, node_field, 0,
          "Mass of the joints of the as-built net. A later row replaces an earlier row"),
-    LIST("load_cases", built.n_load_case, built.load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field,
-         N_KEY(load_case_field),
+    LIST("load_cases", built.n_load_case, built.load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field, 0,
          "Up to 16 load cases of the as-built net: temperatures, gravity, forces and displacements of supports. "
          "Without rows, hifdm computes none"),
-    LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field,
-         N_KEY(require_field),
+    LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field, 0,
          "Requirements for each as-built net. Without rows, there are no requirements and no "
          "yield"),
-    LIST("tolerance.truss", tolerance.n_truss, tolerance.truss, HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field,
-         N_KEY(truss_heat_field),
+    LIST("tolerance.truss", tolerance.n_truss, tolerance.truss, HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, 0,
          "Temperatures of the truss that vary independently. The temperatures of rows with the same members add up. "
          "Without rows, the temperature of the truss does not vary"),
 };
@@ -479,28 +465,17 @@ const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
 
 static bool is_same(const hf_field *f, const char *a, const char *b)
 {
+    static const size_t size[] = {
+        [HF_FIELD_DOUBLE] = sizeof(double),     [HF_FIELD_INT] = sizeof(int),
+        [HF_FIELD_UINT64] = sizeof(uint64_t),   [HF_FIELD_INT_PAIR] = 2 * sizeof(int),
+        [HF_FIELD_WORD] = sizeof(int),          [HF_FIELD_AMOUNT] = 2 * sizeof(double),
+        [HF_FIELD_BOUNDS] = 2 * sizeof(double), [HF_FIELD_VECTOR] = 3 * sizeof(double),
+    };
     const hf_double_list *p = (const void *)a, *q = (const void *)b;
-    switch (f->type) { /* no default label, so that the compiler reports a type without a comparison */
-    case HF_FIELD_TEXT:
-        return !strcmp(a, b);
-    case HF_FIELD_DOUBLE:
-        return !memcmp(a, b, sizeof(double));
-    case HF_FIELD_UINT64:
-        return !memcmp(a, b, sizeof(uint64_t));
-    case HF_FIELD_INT_PAIR:
-        return !memcmp(a, b, 2 * sizeof(int));
-    case HF_FIELD_AMOUNT:
-    case HF_FIELD_BOUNDS:
-        return !memcmp(a, b, 2 * sizeof(double));
-    case HF_FIELD_VECTOR:
-        return !memcmp(a, b, 3 * sizeof(double));
-    case HF_FIELD_INT:
-    case HF_FIELD_WORD:
-        return !memcmp(a, b, sizeof(int));
-    case HF_FIELD_DOUBLE_LIST:
+    if (f->type == HF_FIELD_TEXT) return !strcmp(a, b);
+    if (f->type == HF_FIELD_DOUBLE_LIST)
         return p->n == q->n && !memcmp(p->value, q->value, (size_t)p->n * sizeof *p->value);
-    }
-    return false;
+    return !memcmp(a, b, size[f->type]);
 }
 
 static int add_key(const char *key, int n, char *text, size_t size)
