@@ -99,7 +99,13 @@ static void set_word(setter *s, const yaml_node_t *node, const hf_field *f, void
     refuse(s, node, f, what, node->type == YAML_SCALAR_NODE ? given : "a list or section");
 }
 
-static void set_int(setter *s, const yaml_node_t *node, const hf_field *f, int *to)
+static void set_uint64(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
+{
+    if (!is_plain(node) || !hf_text_uint64(scalar_text(node), to))
+        refuse(s, node, f, "must be a whole number from 0 to 18446744073709551615", "");
+}
+
+static void set_int(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     uint64_t value = 0;
     double real = 0;
@@ -112,17 +118,17 @@ static void set_int(setter *s, const yaml_node_t *node, const hf_field *f, int *
     else if (scalar_text(node)[0] == '-' || (double)value < f->min || (double)value > f->max)
         refuse_range(s, node, f);
     else
-        *to = (int)value;
+        *(int *)to = (int)value;
 }
 
-static void set_pair(setter *s, const yaml_node_t *node, const hf_field *f, int *to)
+static void set_pair(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     if (n_item(node) != 2) {
         refuse(s, node, f, "must be a list of two whole numbers, like [5, 5]", "");
         return;
     }
     for (int k = 0; k < 2; k++)
-        set_int(s, item_of(s, node, k), f, to + k);
+        set_int(s, item_of(s, node, k), f, (int *)to + k);
 }
 
 /* Returns true for a number with a unit, such as "10 N". Letters of an exponent or of digits in another base
@@ -159,7 +165,7 @@ static void refuse_number(setter *s, const yaml_node_t *node, const hf_field *f)
                *f->unit && has_unit(scalar_text(node)) ? "; the unit is in the key's name" : "");
 }
 
-static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, double *to)
+static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     double value;
     if (is_plain(node) && hf_text_has_decimal_comma(scalar_text(node)))
@@ -173,17 +179,18 @@ static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, do
 }
 
 /* Sets a list of numbers from a list or from one number. */
-static void set_list(setter *s, const yaml_node_t *node, const hf_field *f, hf_double_list *to)
+static void set_list(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
+    hf_double_list *list = to;
     long n = node->type == YAML_SEQUENCE_NODE ? n_item(node) : 1;
-    to->n = 0;
+    list->n = 0;
     if (node->type == YAML_MAPPING_NODE || n > HF_LIST_MAX) {
         refuse(s, node, f, "must be a list of at most 32 numbers, like [1, 2.5]", "");
     } else if (node->type != YAML_SEQUENCE_NODE) {
-        set_double(s, node, f, &to->value[to->n++]);
+        set_double(s, node, f, &list->value[list->n++]);
     } else {
-        for (; to->n < n; to->n++)
-            set_double(s, item_of(s, node, to->n), f, &to->value[to->n]);
+        for (; list->n < n; list->n++)
+            set_double(s, item_of(s, node, list->n), f, &list->value[list->n]);
     }
 }
 
@@ -198,7 +205,7 @@ static bool is_percentage(const char *text, char number[64])
     return true;
 }
 
-static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, double to[2])
+static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     char number[64];
     double value;
@@ -210,8 +217,8 @@ static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, do
     else if (value < f->min || value > f->max)
         refuse_range(s, node, f);
     else {
-        to[is_part] = is_part ? value / 100 : value;
-        to[!is_part] = (double)NAN;
+        ((double *)to)[is_part] = is_part ? value / 100 : value;
+        ((double *)to)[!is_part] = (double)NAN;
     }
 }
 
@@ -224,7 +231,7 @@ static bool is_open(const yaml_node_t *node, bool is_upper)
     return false;
 }
 
-static void set_bounds(setter *s, const yaml_node_t *node, const hf_field *f, double to[2])
+static void set_bounds(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     double bound[2] = {(double)NAN, (double)NAN};
     if (n_item(node) != 2) {
@@ -246,7 +253,7 @@ static void set_bounds(setter *s, const yaml_node_t *node, const hf_field *f, do
         memcpy(to, bound, sizeof bound);
 }
 
-static void set_vector(setter *s, const yaml_node_t *node, const hf_field *f, double to[3])
+static void set_vector(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     double part[3] = {(double)NAN, (double)NAN, (double)NAN};
     if (n_item(node) != 3) {
@@ -258,7 +265,7 @@ static void set_vector(setter *s, const yaml_node_t *node, const hf_field *f, do
     if (!isnan(part[0] + part[1] + part[2])) memcpy(to, part, sizeof part);
 }
 
-static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, char *to)
+static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     size_t size = (size_t)f->max;
     if (node->type != YAML_SCALAR_NODE || (f->min > 0 && !*scalar_text(node))) {
@@ -273,48 +280,21 @@ static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, char
 void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node, const hf_field *f,
                      const char *case_path, void *to)
 {
+    static void (*const set[])(setter *, const yaml_node_t *, const hf_field *, void *) = {
+        [HF_FIELD_DOUBLE] = set_double, [HF_FIELD_DOUBLE_LIST] = set_list, [HF_FIELD_AMOUNT] = set_amount,
+        [HF_FIELD_BOUNDS] = set_bounds, [HF_FIELD_VECTOR] = set_vector,    [HF_FIELD_UINT64] = set_uint64,
+        [HF_FIELD_INT] = set_int,       [HF_FIELD_INT_PAIR] = set_pair,    [HF_FIELD_WORD] = set_word,
+        [HF_FIELD_TEXT] = set_text,
+    };
     setter s = {faults, document, case_path};
-    switch (f->type) {
-    case HF_FIELD_DOUBLE:
-        set_double(&s, node, f, (double *)to);
-        break;
-    case HF_FIELD_DOUBLE_LIST:
-        set_list(&s, node, f, (hf_double_list *)to);
-        break;
-    case HF_FIELD_AMOUNT:
-        set_amount(&s, node, f, (double *)to);
-        break;
-    case HF_FIELD_BOUNDS:
-        set_bounds(&s, node, f, (double *)to);
-        break;
-    case HF_FIELD_VECTOR:
-        set_vector(&s, node, f, (double *)to);
-        break;
-    case HF_FIELD_UINT64:
-        if (!is_plain(node) || !hf_text_uint64(scalar_text(node), (uint64_t *)to))
-            refuse(&s, node, f, "must be a whole number from 0 to 18446744073709551615", "");
-        break;
-    case HF_FIELD_INT:
-        set_int(&s, node, f, (int *)to);
-        break;
-    case HF_FIELD_INT_PAIR:
-        set_pair(&s, node, f, (int *)to);
-        break;
-    case HF_FIELD_WORD:
-        set_word(&s, node, f, to);
-        break;
-    case HF_FIELD_TEXT:
-        set_text(&s, node, f, to);
-        break;
-    }
+    set[f->type](&s, node, f, to);
 }
 
 void hf_config_no_value(const hf_field *field, void *to)
 {
+    static const int n_nan[] = {[HF_FIELD_DOUBLE] = 1, [HF_FIELD_AMOUNT] = 2, [HF_FIELD_VECTOR] = 3};
     double *number = to;
-    if (field->type == HF_FIELD_DOUBLE || field->type == HF_FIELD_AMOUNT) number[0] = (double)NAN;
-    if (field->type == HF_FIELD_AMOUNT) number[1] = (double)NAN;
-    for (int k = 0; k < 3 && field->type == HF_FIELD_VECTOR; k++)
+    for (int k = 0; k < n_nan[field->type]; k++)
         number[k] = (double)NAN;
     if (field->type != HF_FIELD_BOUNDS) return;
     number[0] = -(double)INFINITY;
