@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -36,6 +37,17 @@ static bool write_location(const char *where_given, const char *file, const char
 bool hf_config_location(const hf_case *c, const char *key, char *text, size_t size)
 {
     return write_location(c->where_given, c->path, key, text, size);
+}
+
+const char *hf_config_place(const hf_case *c, char place[HF_LOCATION_SIZE], const char *key_format, ...)
+{
+    char key[HF_KEY_SIZE];
+    va_list arguments;
+    va_start(arguments, key_format);
+    vsnprintf(key, sizeof key, key_format, arguments);
+    va_end(arguments);
+    hf_config_location(c, key, place, HF_LOCATION_SIZE);
+    return place;
 }
 
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what)

@@ -7,14 +7,13 @@
 #include <hifdm/config.h>
 
 #include "base/csv.h"
+#include "case/config_fault.h"
 #include "net/cable_pick.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define WHERE_SIZE (HF_PATH_SIZE + 96)
 #define COLUMN_MAX 64
 #define LARGEST_STRAIN 0.1 /* maximum thermal strain; a larger one is an error in the case */
 
@@ -28,14 +27,6 @@ typedef struct {
     int *cable; /* [n_cable], scratch: the cables of a row */
     hf_messages *messages;
 } maker;
-
-static const char *location_in_row(const maker *q, int row, const char *key, char where[WHERE_SIZE])
-{
-    char path[64];
-    snprintf(path, sizeof path, "load_cases.%d.%s", row, key);
-    hf_config_location(q->c, path, where, WHERE_SIZE);
-    return where;
-}
 
 /* ---- names ---- */
 
@@ -80,9 +71,10 @@ static hf_status heat_cables(const maker *q, int row)
     const hf_load_case_settings *s = &q->c->built.load_case[row];
     const hf_scene *scene = q->scene;
     hf_load_case *load_case = load_case_of_row(q, row);
-    char where[WHERE_SIZE];
+    char where[HF_LOCATION_SIZE];
     int n_unknown = 0, unknown = 0, n_wild = 0, wild = 0;
-    int n = hf_cable_pick_some(scene, s->set, location_in_row(q, row, "set", where), q->cable, q->messages);
+    int n = hf_cable_pick_some(scene, s->set, hf_config_place(q->c, where, "load_cases.%d.set", row), q->cable,
+                               q->messages);
     for (int k = 0; k < n; k++) {
         int e = q->cable[k];
         double expansion = q->load_cases->material.expansion_per_K[e];
@@ -94,21 +86,23 @@ static hf_status heat_cables(const maker *q, int row)
     if (n == 0) return HF_BAD_CASE;
     if (n_wild)
         hf_error(q->messages, HF_BAD_CASE,
-                 "%s: the lengths of %d cables would change by more than the fraction %g, such as '%s' by %.3g at "
-                 "%.6g K. Check this temperature and expansion_per_K",
-                 location_in_row(q, row, temperature_key(s), where), n_wild, LARGEST_STRAIN, scene->cable_id[wild],
-                 q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild], load_case->rise_K[wild]);
+                 "%s: %d cables would change by more than %g times their lengths, such as '%s' by %.3g times at %.6g "
+                 "K. Check this temperature and expansion_per_K",
+                 hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_wild, LARGEST_STRAIN,
+                 scene->cable_id[wild], q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild],
+                 load_case->rise_K[wild]);
     if (n_unknown == 0) return n_wild ? HF_BAD_CASE : HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
                     "%s: the expansion of %d cables is not known, such as '%s'. Add expansion_per_K of their sets to "
                     "`cables`; use 0 for cables that do not expand",
-                    location_in_row(q, row, temperature_key(s), where), n_unknown, scene->cable_id[unknown]);
+                    hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_unknown,
+                    scene->cable_id[unknown]);
 }
 
 hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_part part, const char *where,
                                      const char *other, hf_messages *messages)
 {
-    char location[WHERE_SIZE];
+    char location[HF_LOCATION_SIZE];
     int n = 0, n_expanding = 0;
     for (int e = 0; e < t->n_member; e++) {
         n += hf_truss_is_of(t, e, part);
@@ -132,9 +126,9 @@ static hf_status heat_truss(const maker *q, int row)
     const hf_load_case_settings *s = &q->c->built.load_case[row];
     const hf_truss *t = q->truss;
     hf_load_case *load_case = load_case_of_row(q, row);
-    char where[WHERE_SIZE];
+    char where[HF_LOCATION_SIZE];
     if (!t && s->part == HF_PART_ALL) return HF_OK;
-    location_in_row(q, row, s->part == HF_PART_ALL ? temperature_key(s) : "part", where);
+    hf_config_place(q->c, where, "load_cases.%d.%s", row, s->part == HF_PART_ALL ? temperature_key(s) : "part");
     if (!t) return hf_error(q->messages, HF_BAD_CASE, "%s: the case has no truss", where);
     for (int e = 0; e < t->n_member; e++)
         if (hf_truss_is_of(t, e, s->part))
@@ -160,7 +154,7 @@ static hf_status weigh(const maker *q, int row)
     static const double down[3] = {0, 0, -1};
     const hf_load_case_settings *s = &q->c->built.load_case[row];
     const double *along = isnan(s->direction[0]) ? down : s->direction;
-    char where[WHERE_SIZE];
+    char where[HF_LOCATION_SIZE];
     int n_unknown = 0, unknown = 0;
     if (isnan(s->gravity_m_per_s2)) return HF_OK;
     double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
@@ -173,7 +167,7 @@ static hf_status weigh(const maker *q, int row)
         q->messages, HF_BAD_CASE,
         "%s: the mass of %d cables is not known, such as '%s'. Add mass_kg_per_m of their sets to `cables`; use 0 for "
         "cables without mass",
-        location_in_row(q, row, "gravity_m_per_s2", where), n_unknown, q->scene->cable_id[unknown]);
+        hf_config_place(q->c, where, "load_cases.%d.gravity_m_per_s2", row), n_unknown, q->scene->cable_id[unknown]);
 }
 
 /* ---- forces and displacements ---- */
@@ -182,7 +176,7 @@ static hf_status push(const maker *q, int row)
 {
     const hf_load_case_settings *s = &q->c->built.load_case[row];
     hf_load_case *load_case = load_case_of_row(q, row);
-    char where[WHERE_SIZE];
+    char where[HF_LOCATION_SIZE];
     int n = 0;
     for (int i = 0; i < q->scene->n_node; i++) {
         bool is_support = q->scene->role[i] == HF_ROLE_SUPPORT;
@@ -195,8 +189,8 @@ static hf_status push(const maker *q, int row)
         n += is_pushed;
     }
     if (isnan(s->force_N[0]) || n > 0) return HF_OK;
-    return hf_error(q->messages, HF_BAD_CASE, "%s: this net has no %s nodes", location_in_row(q, row, "role", where),
-                    hf_nodes_word[s->role]);
+    return hf_error(q->messages, HF_BAD_CASE, "%s: this net has no %s nodes",
+                    hf_config_place(q->c, where, "load_cases.%d.role", row), hf_nodes_word[s->role]);
 }
 
 /* ---- a table of nodes ---- */
@@ -256,7 +250,7 @@ static hf_status read_nodes(const maker *q, int row)
 static hf_status check_EA(const maker *q)
 {
     const hf_scene *s = q->scene;
-    char where[WHERE_SIZE];
+    char where[HF_LOCATION_SIZE];
     int n = 0, first = 0;
     for (int e = 0; e < s->n_cable; e++)
         if (!(s->EA_N && s->EA_N[e] > 0) && n++ == 0) first = e;
@@ -265,7 +259,7 @@ static hf_status check_EA(const maker *q)
         q->messages, HF_BAD_CASE,
         "%s: %d cables have no EA, such as '%s', but load cases of the as-built net need it. Add scene.EA_inner_N and "
         "scene.EA_boundary_N, or the column EA_N of an imported net",
-        location_in_row(q, 0, "name", where), n, s->cable_id[first]);
+        hf_config_place(q->c, where, "load_cases.0.name"), n, s->cable_id[first]);
 }
 
 typedef hf_status row_step(const maker *, int);

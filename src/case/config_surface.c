@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Maximum RMS distance of the target positions from the target surface, relative to the depth of the surface below the
  * net. It is 1 mm for a shallow reflector of 50 mm, or half the sag of facets with a side of a sixth of the radius. If
@@ -11,8 +12,6 @@
 #define OFF_MOST 0.02
 
 #define FOCAL_MOST 20.0 /* apertures; a larger one was probably given in mm */
-
-#define LOCATION_SIZE (HF_PATH_SIZE + 128)
 
 static bool is_on(const hf_target_surface_fit *fit)
 {
@@ -23,7 +22,7 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
                         const hf_target_surface_fit *cylinder, const hf_target_surface_fit *paraboloid,
                         hf_messages *messages)
 {
-    char location[LOCATION_SIZE], other[LOCATION_SIZE], line[32] = "";
+    char location[HF_LOCATION_SIZE], other[HF_LOCATION_SIZE], line[32] = "";
     bool is_round = surface->kind == HF_SURFACE_PARABOLOID;
     const hf_target_surface_fit *fit = is_round ? paraboloid : cylinder;
     const char *advice = "its vertex is the origin, its axis z, its focal length this one";
@@ -31,7 +30,7 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
         advice = is_round ? "give surface.kind: parabolic_cylinder" : "give surface.kind: paraboloid";
     if (!hf_config_location(c, "surface.focal_length_m", location, sizeof location) &&
         hf_config_location(c, "surface.kind", other, sizeof other))
-        snprintf(location, sizeof location, "%s", other);
+        memcpy(location, other, sizeof location);
     if (scene->node_line) snprintf(line, sizeof line, ", line %d", scene->node_line[fit->farthest]);
     return hf_error(messages, HF_BAD_CASE,
                     "%s: the inner nodes are not on the %s with f = %g m: the RMS of their heights above it is %.4g "
@@ -47,7 +46,7 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
 static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messages *messages)
 {
     const char *key = NULL;
-    char location[LOCATION_SIZE];
+    char location[HF_LOCATION_SIZE];
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     hf_surface_settings of = hf_config_known_surface(c, &key);
     if (of.focal_length_m == 0) {
@@ -62,17 +61,17 @@ static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messa
     double x_m = high[0] - low[0], y_m = high[1] - low[1];
     double aperture_m = of.kind == HF_SURFACE_PARABOLIC_CYLINDER ? x_m : fmax(x_m, y_m);
     if (!(of.focal_length_m > FOCAL_MOST * aperture_m)) return;
-    hf_config_location(c, key, location, sizeof location);
     hf_warning(messages,
                "%s: %g m is %.0f times the aperture of %g m; reflectors have less than %g times. Is this "
                "value in m?",
-               location, of.focal_length_m, of.focal_length_m / aperture_m, aperture_m, FOCAL_MOST);
+               hf_config_place(c, location, "%s", key), of.focal_length_m, of.focal_length_m / aperture_m, aperture_m,
+               FOCAL_MOST);
 }
 
 /* Sets values of the feed that the case does not give to NaN. They follow from the target surface. */
 static void open_feed(const hf_case *c, hf_pattern_settings *p)
 {
-    char location[LOCATION_SIZE];
+    char location[HF_LOCATION_SIZE];
     if (!hf_config_location(c, "surface.pattern.feed.position_m", location, sizeof location))
         p->position_m[0] = (double)NAN;
     if (!hf_config_location(c, "surface.pattern.feed.aim_m", location, sizeof location)) p->aim_m[0] = (double)NAN;

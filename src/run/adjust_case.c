@@ -7,6 +7,7 @@
 #include "run/adjust_case.h"
 
 #include "base/arena.h"
+#include "case/config_fault.h"
 #include "net/cable_pick.h"
 #include "solve/limits.h"
 
@@ -270,7 +271,7 @@ static hf_status find_prior(job *j, hf_messages *messages)
 
 static hf_status check_sections(const hf_case *c, const char *path, hf_messages *messages)
 {
-    char location[HF_PATH_SIZE + 64];
+    char location[HF_LOCATION_SIZE];
     if (!c->has_adjust)
         hf_error(
             messages, HF_BAD_CASE,
@@ -282,19 +283,18 @@ static hf_status check_sections(const hf_case *c, const char *path, hf_messages 
             messages, HF_BAD_CASE,
             "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, the standard deviation of cutting",
             path);
-    hf_config_location(c, "adjust.figure", location, sizeof location);
     if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
-        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface", location,
-                 hf_adjust_figure_word[c->adjust.figure]);
+        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface",
+                 hf_config_place(c, location, "adjust.figure"), hf_adjust_figure_word[c->adjust.figure]);
     return messages->n_error ? HF_BAD_CASE : HF_OK;
 }
 
 static hf_status pick_cables(job *j, hf_messages *messages)
 {
-    char location[HF_PATH_SIZE + 64];
+    char location[HF_LOCATION_SIZE];
     const hf_case *c = &j->problem.settings;
-    hf_config_location(c, "adjust.set", location, sizeof location);
-    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, location, j->cable, messages);
+    int n = hf_cable_pick_some(&j->problem.scene, c->adjust.set, hf_config_place(c, location, "adjust.set"), j->cable,
+                               messages);
     j->task = (hf_adjust_task){&c->adjust, &j->objectives, n, j->cable, j->least_N, j->threads};
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/random.h"
+#include "case/config_fault.h"
 #include "net/target_surface.h"
 #include "net/variables.h"
 #include "run/problem_parts.h"
@@ -525,7 +526,7 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
         is_reached |= !q->now.objective[i];
     for (int i = 0; i < objectives->n_objective; i++) {
         if (!q->now.objective[i]) continue;
-        hf_messages_location(messages, place, "optimize.%s.%d", is_front ? "front" : "objective", i);
+        hf_config_place(&q->p->settings, place, "optimize.%s.%d", is_front ? "front" : "objective", i);
         hf_objectives_name(objectives, i, name);
         const char *why = why_objective(objectives->objective[i].settings.figure);
         has_fault |= is_front || !is_reached;
@@ -549,11 +550,11 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
             hf_warning(
                 messages,
                 "%s: has no effect at the initial design, because its cables or the cables at its supports are slack",
-                hf_messages_location(messages, place, "optimize.variables.%d", i));
+                hf_config_place(&q->p->settings, place, "optimize.variables.%d", i));
     for (int i = 0; i < o->n_limit; i++)
         if (q->now.limit[i])
             hf_warning(messages, "%s: no design variable of this case changes the limited figure: %s",
-                       hf_messages_location(messages, place, "optimize.limits.%d", i),
+                       hf_config_place(&q->p->settings, place, "optimize.limits.%d", i),
                        o->limit[i].figure == HF_LIMIT_DEFLECTION ? why_objective(HF_FIGURE_DEFLECTION)
                                                                  : why_objective(HF_FIGURE_TENSION));
     if (q->p->objectives.n_objective > 0) return tell_objectives(q, messages);
@@ -562,7 +563,7 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
         messages, HF_BAD_CASE,
         "%s: no design variable of this case changes psi: %s. Add a design variable that does, or use another "
         "optimize.objective",
-        hf_messages_location(messages, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
+        hf_config_place(&q->p->settings, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
         why_objective(HF_FIGURE_PSI));
 }
 
@@ -606,7 +607,7 @@ static void doubt_ranges(const hf_problem *p, hf_messages *messages)
         if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
         hf_warning(messages,
                    "%s: %g is %.2g times the maximum value of this row, %.3g; for a relative range, write %g %%",
-                   hf_messages_location(messages, place, "optimize.variables.%d.range", i), row->range,
+                   hf_config_place(&p->settings, place, "optimize.variables.%d.range", i), row->range,
                    row->range / most, most, row->range);
     }
 }
@@ -615,19 +616,13 @@ hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     reach q;
-    hf_problem_give_places(p, messages);
     doubt_ranges(p, messages);
-    hf_problem_give_places(NULL, messages);
     if (!hf_refine_applies(&p->evaluator)) return HF_OK;
     if (!o->n_variable_row && !o->n_limit && !p->objectives.n_objective) return HF_OK;
     hf_status status = create_reach(p, &q);
     if (status == HF_OK) status = look_at_reach(&q);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the objectives");
-    if (status == HF_OK) {
-        hf_problem_give_places(p, messages);
-        status = tell_reach(&q, messages);
-        hf_problem_give_places(NULL, messages);
-    }
+    if (status == HF_OK) status = tell_reach(&q, messages);
     destroy_reach(&q);
     return status == HF_NOT_EVALUATED ? HF_OK : status;
 }

@@ -10,6 +10,7 @@
 #include "run/stages.h"
 
 #include "base/arena.h"
+#include "case/config_fault.h"
 #include "solve/coupling.h"
 
 #include <math.h>
@@ -22,10 +23,10 @@
 hf_status hf_load_case_stage_take(const hf_problem *p, const hf_workspace *w, hf_load_case_stage *c,
                                   hf_messages *messages)
 {
-    char where[HF_PATH_SIZE + 96];
+    char where[HF_LOCATION_SIZE];
     size_t n = 3 * (size_t)p->model.n_node;
     hf_load_case_stage_free(c);
-    hf_config_location(&p->settings, "load_cases.0.name", where, sizeof where);
+    hf_config_place(&p->settings, where, "load_cases.0.name");
     HF_TRY(hf_built_make(where, &p->scene, &p->model, &p->settings.form, w, &c->built, messages));
     if (HF_ARENA_ARRAYS(&c->block, HF_ARRAY(c->cut_m, p->model.n_cable), HF_ARRAY(c->move_m, n), HF_ARRAY(c->load_N, n),
                         HF_ARRAY(c->attachment_move_m, 3 * p->model.n_attachment),

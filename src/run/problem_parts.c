@@ -12,6 +12,7 @@
 
 #include "base/elementary.h"
 #include "base/file_out.h"
+#include "case/config_fault.h"
 #include "linalg/lapack.h"
 #include "net/scene_doubt.h"
 #include "net/symmetry.h"
@@ -42,7 +43,7 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
 {
     const hf_double_list *at = &p->surface.frequencies_Hz;
     const hf_pattern_surface theory = {&p->facets, p->scene.position_m, NULL};
-    char place[HF_PATH_SIZE + 128];
+    char place[HF_LOCATION_SIZE];
     double least_Hz = INFINITY;
     for (int k = 0; k < at->n; k++) {
         hf_far_field plan;
@@ -50,12 +51,11 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
         double terms = (double)plan.n_point * hf_pattern_angles(&plan);
         least_Hz = fmin(least_Hz, at->value[k]);
         if (terms <= PATTERN_TERMS_MOST) continue;
-        hf_config_location(&p->settings, "surface.frequencies_Hz", place, sizeof place);
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: at %g GHz the far field needs %.3g quadrature points times %d angles, which are %.2g "
-                        "terms, but the maximum is %g. Lower the frequency, or narrow surface.pattern.theta_deg",
-                        place, at->value[k] / 1e9, (double)plan.n_point, hf_pattern_angles(&plan), terms,
-                        PATTERN_TERMS_MOST);
+                        "%s: at %g GHz the far field has %.3g quadrature points times %d angles: %.2g terms, but the "
+                        "maximum is %g; lower the frequency, or narrow surface.pattern.theta_deg",
+                        hf_config_place(&p->settings, place, "surface.frequencies_Hz"), at->value[k] / 1e9,
+                        (double)plan.n_point, hf_pattern_angles(&plan), terms, PATTERN_TERMS_MOST);
     }
     double across = 2 * sqrt(area_m2 / HF_PI) * least_Hz / HF_LIGHT_M_PER_S;
     if (across < WAVELENGTHS_LEAST)
@@ -70,22 +70,21 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
  * taken for the surface. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY, with a message. */
 static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
 {
-    char place[HF_PATH_SIZE + 128];
+    char place[HF_LOCATION_SIZE];
     hf_feed feed;
     hf_surface_measures m;
     const hf_facet_shape theory = {.position_m = p->scene.position_m};
     const double most_Hz = hf_surface_highest_Hz(&p->surface);
     bool is_given = hf_config_location(&p->settings, "surface.pattern.feed.position_m", place, sizeof place);
-    if (!is_given) hf_config_location(&p->settings, "surface.pattern", place, sizeof place);
+    if (!is_given) hf_config_place(&p->settings, place, "surface.pattern");
     if (p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE, "%s: this net has no facets, from which the far field would be computed",
                         place);
     int n_dark = hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
-    if (isnan(feed.axis[2])) {
-        hf_config_location(&p->settings, "surface.pattern.feed.aim_m", place, sizeof place);
-        return hf_error(messages, HF_BAD_CASE, "%s: the feed at (%g, %g, %g) m cannot aim at its own position", place,
-                        feed.position_m[0], feed.position_m[1], feed.position_m[2]);
-    }
+    if (isnan(feed.axis[2]))
+        return hf_error(messages, HF_BAD_CASE, "%s: the feed at (%g, %g, %g) m cannot aim at its own position",
+                        hf_config_place(&p->settings, place, "surface.pattern.feed.aim_m"), feed.position_m[0],
+                        feed.position_m[1], feed.position_m[2]);
     if (n_dark > 0)
         return hf_error(
             messages, HF_BAD_CASE,
@@ -124,12 +123,6 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
 static void find_key_place(const void *settings, const char *key, char *text, size_t size)
 {
     hf_config_location(settings, key, text, size);
-}
-
-void hf_problem_give_places(const hf_problem *p, hf_messages *messages)
-{
-    messages->find_location = p ? find_key_place : NULL;
-    messages->location_context = p ? &p->settings : NULL;
 }
 
 static hf_status find_objectives(hf_problem *p, hf_messages *messages)
@@ -198,9 +191,11 @@ hf_status hf_problem_load(const char *path, const hf_problem_source *source, con
                           const volatile sig_atomic_t *stop, hf_problem *p, hf_messages *messages)
 {
     *p = (hf_problem){0};
-    hf_problem_give_places(p, messages);
+    messages->find_location = find_key_place;
+    messages->location_context = &p->settings;
     hf_status status = load_parts(path, source, set, n_set, stop, p, messages);
-    hf_problem_give_places(NULL, messages);
+    messages->find_location = NULL;
+    messages->location_context = NULL;
     return status;
 }
 
@@ -301,9 +296,9 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
                         "shorter length for this cable, or a law that keeps it taut",
                         is_row ? "cable" : "boundary cable", name);
     if (is_row)
-        hf_messages_location(messages, where, "optimize.variables.%d", p->model.variable[k].setting);
+        hf_config_place(&p->settings, where, "optimize.variables.%d", p->model.variable[k].setting);
     else
-        hf_messages_location(messages, where, "optimize.range_N");
+        hf_config_place(&p->settings, where, "optimize.range_N");
     if (!is_row && (base + o->range_N < o->min_tension_N || base - o->range_N > o->max_tension_N))
         return hf_error(
             messages, HF_BAD_CASE,
@@ -377,10 +372,7 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     p->evaluator = hf_problem_evaluator(p);
     if (!p->point.block && hf_objectives_point_create(p->evaluator.objectives, &p->point) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
-    hf_problem_give_places(p, messages);
-    hf_status status = p->settings.has_optimize && m->n_variable > 0 ? check_base(p, messages) : HF_OK;
-    hf_problem_give_places(NULL, messages);
-    HF_TRY(status);
+    if (p->settings.has_optimize && m->n_variable > 0) HF_TRY(check_base(p, messages));
     hf_symmetry_average(m, p->initial);
     return HF_OK;
 }

@@ -13,10 +13,6 @@
 hf_status hf_problem_load(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
                           const volatile sig_atomic_t *stop, hf_problem *problem, hf_messages *messages);
 
-/* Makes messages report keys with their locations in the case of this problem (hf_messages_location). With NULL they
- * report the key alone again. */
-void hf_problem_give_places(const hf_problem *problem, hf_messages *messages);
-
 /* Sets the members of the summary that case and model determine. */
 void hf_problem_describe(const hf_problem *problem, hf_summary *summary);
 

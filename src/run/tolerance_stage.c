@@ -15,6 +15,7 @@
 #include "base/arena.h"
 #include "base/clock.h"
 #include "base/sha256.h"
+#include "case/config_fault.h"
 #include "net/cable_pick.h"
 #include "run/stages.h"
 #include "store/samples.h"
@@ -51,7 +52,7 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
     const hf_case *c = &p->settings;
     hf_status status = HF_OK;
     for (int i = 0; i < c->tolerance.n_require; i++) {
-        char key[64], place[HF_PATH_SIZE + 128];
+        char place[HF_LOCATION_SIZE];
         hf_tolerance_measure measure = c->tolerance.require[i].measure;
         hf_gain_beam beam;
         const char *fault = NULL, *better = loss_of_nodes(p, measure);
@@ -64,9 +65,8 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
         else if (measure == HF_TOLERANCE_PATTERN_LOSS && !make_beam(p, &beam))
             fault = HF_GAIN_TOO_COARSE;
         if (!fault) continue;
-        snprintf(key, sizeof key, "tolerance.require.%d.measure", i);
-        hf_config_location(c, key, place, sizeof place);
-        status = hf_error(messages, HF_BAD_CASE, "%s: %s is not measured: %s", place,
+        status = hf_error(messages, HF_BAD_CASE, "%s: %s is not measured: %s",
+                          hf_config_place(c, place, "tolerance.require.%d.measure", i),
                           hf_tolerance_measure_word[measure], fault);
     }
     return status;
@@ -75,15 +75,14 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
 static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_messages *messages)
 {
     const hf_scene *s = &p->scene;
-    char place[HF_PATH_SIZE + 128];
+    char place[HF_LOCATION_SIZE];
     int n = 0, first = 0;
     for (int e = 0; e < s->n_cable && p->settings.tolerance.sigma_temperature_K > 0; e++)
         if (isnan(t->expansion_per_K[e]) && n++ == 0) first = e;
     if (n == 0) return HF_OK;
-    hf_config_location(&p->settings, "tolerance.sigma_temperature_K", place, sizeof place);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables have no expansion_per_K, such as '%s'; add it to a row of `cables`", place, n,
-                    s->cable_id[first]);
+                    "%s: %d cables have no expansion_per_K, such as '%s'; add it to a row of `cables`",
+                    hf_config_place(&p->settings, place, "tolerance.sigma_temperature_K"), n, s->cable_id[first]);
 }
 
 /* Checks that the parts of the truss in tolerance.truss exist and have an expansion. Returns HF_OK, or the status of
@@ -93,9 +92,8 @@ static hf_status check_truss_heat(const hf_problem *p, hf_messages *messages)
     const hf_tolerance_settings *t = &p->settings.tolerance;
     hf_status worst = HF_OK;
     for (int i = 0; i < t->n_truss; i++) {
-        char key[64], place[HF_PATH_SIZE + 128];
-        snprintf(key, sizeof key, "tolerance.truss.%d.part", i);
-        hf_config_location(&p->settings, key, place, sizeof place);
+        char place[HF_LOCATION_SIZE];
+        hf_config_place(&p->settings, place, "tolerance.truss.%d.part", i);
         hf_part part = (hf_part)(HF_PART_TRUSS + t->truss[i].part);
         hf_status status = hf_config_demand_expansion(&p->settings, &p->carrier.truss, part, place, "", messages);
         if (status != HF_OK) worst = status;
@@ -110,7 +108,7 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
     const hf_scene *s = &p->scene;
     const hf_tolerance_settings *t = &p->settings.tolerance;
     double by_ratio = LARGEST_NUMBER * t->sigma_cut_ratio * (sqrt(1 - t->batch) + sqrt(t->batch));
-    char place[HF_PATH_SIZE + 128];
+    char place[HF_LOCATION_SIZE];
     for (int e = 0; e < s->n_cable; e++) {
         double length = hf_scene_length_at_target(s, e), by_cut = LARGEST_NUMBER * t->sigma_cut_m / length;
         double by_heat = 0;
@@ -120,46 +118,46 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
         const char *key = by_cut >= by_ratio && by_cut >= by_heat ? "tolerance.sigma_cut_m"
                           : by_ratio >= by_heat                   ? "tolerance.sigma_cut_ratio"
                                                                   : "tolerance.sigma_temperature_K";
-        hf_config_location(&p->settings, key, place, sizeof place);
         return hf_error(
             messages, HF_BAD_CASE,
             "%s: cable '%s' is %.3g m long, and errors of cutting and temperature (%d standard deviations) may change "
-            "its length by the fraction %.3g, but the maximum is 0.5; use smaller errors",
-            place, s->cable_id[e], length, LARGEST_NUMBER, by_cut + by_ratio + by_heat);
+            "its length by %.3g times its value, but the maximum is 0.5 times; use smaller errors",
+            hf_config_place(&p->settings, place, "%s", key), s->cable_id[e], length, LARGEST_NUMBER,
+            by_cut + by_ratio + by_heat);
     }
     return HF_OK;
 }
 
-/* Writes the location of the section for messages: that of the first sigma in the case. */
-static void place_section(const hf_case *c, char *place, size_t size)
+/* Writes the location of the section for messages: that of the first sigma in the case. Returns place. */
+static const char *place_section(const hf_case *c, char place[HF_LOCATION_SIZE])
 {
     static const char *const key[] = {"tolerance.sigma_cut_m",         "tolerance.sigma_cut_ratio",
                                       "tolerance.sigma_EA_ratio",      "tolerance.sigma_support_m",
                                       "tolerance.sigma_temperature_K", "tolerance.truss.0.part"};
     for (size_t i = 0; i < sizeof key / sizeof *key; i++)
-        if (hf_config_location(c, key[i], place, size)) return;
+        if (hf_config_location(c, key[i], place, HF_LOCATION_SIZE)) break;
+    return place;
 }
 
 static hf_status check_EA(const hf_problem *p, hf_messages *messages)
 {
-    char place[HF_PATH_SIZE + 128];
-    place_section(&p->settings, place, sizeof place);
-    return hf_cable_demand_EA(&p->scene, place, "errors of as-built nets need", "", messages);
+    char place[HF_LOCATION_SIZE];
+    return hf_cable_demand_EA(&p->scene, place_section(&p->settings, place), "errors of as-built nets need", "",
+                              messages);
 }
 
 /* Refuses struts that are visible in the laws. Struts that result from other laws show only after form-finding. */
 static hf_status check_struts(const hf_problem *p, hf_messages *messages)
 {
     const hf_scene *s = &p->scene;
-    char place[HF_PATH_SIZE + 128];
+    char place[HF_LOCATION_SIZE];
     int n = 0, first = 0;
     for (int e = 0; e < s->n_cable; e++)
         if (hf_law_has(s->law[e], HF_LAW_MAY_PUSH) && s->target[e] < 0 && n++ == 0) first = e;
     if (n == 0) return HF_OK;
-    place_section(&p->settings, place, sizeof place);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables are in compression, such as '%s', but the as-built net cannot have struts", place, n,
-                    s->cable_id[first]);
+                    "%s: %d cables are in compression, such as '%s', but the as-built net cannot have struts",
+                    place_section(&p->settings, place), n, s->cable_id[first]);
 }
 
 static hf_status make_material(const hf_problem *p, hf_material *t, hf_messages *messages)
@@ -517,9 +515,9 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
 static hf_status work_off(job *j, hf_run *r, hf_summary *summary, hf_messages *messages)
 {
     const hf_problem *p = j->problem;
-    char place[HF_PATH_SIZE + 128];
-    place_section(&p->settings, place, sizeof place);
-    HF_TRY(hf_built_make(place, &p->scene, &p->model, &p->settings.form, j->shape, &j->built, messages));
+    char place[HF_LOCATION_SIZE];
+    HF_TRY(hf_built_make(place_section(&p->settings, place), &p->scene, &p->model, &p->settings.form, j->shape,
+                         &j->built, messages));
     j->built.stop = j->request->control.stop_requested;
     /* before the first sample: the first order takes a while in large nets */
     report(j, (hf_run_progress){.samples_all = p->settings.tolerance.samples});
