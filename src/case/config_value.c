@@ -205,8 +205,9 @@ static bool is_percentage(const char *text, char number[64])
     return true;
 }
 
-static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
+static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, void *amount)
 {
+    double *to = amount;
     char number[64];
     double value;
     bool is_part = node->type == YAML_SCALAR_NODE && is_percentage(scalar_text(node), number);
@@ -217,8 +218,8 @@ static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, vo
     else if (value < f->min || value > f->max)
         refuse_range(s, node, f);
     else {
-        ((double *)to)[is_part] = is_part ? value / 100 : value;
-        ((double *)to)[!is_part] = (double)NAN;
+        to[is_part] = is_part ? value / 100 : value;
+        to[!is_part] = (double)NAN;
     }
 }
 

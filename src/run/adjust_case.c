@@ -400,30 +400,18 @@ static double measured_psi_m(const job *j)
 
 /* ---- interface ---- */
 
-static void lay_out_job(hf_arena *arena, job *j)
-{
-    size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
-    j->cable = hf_arena_take(arena, n_cable, sizeof *j->cable);
-    j->least_N = hf_arena_take(arena, n_cable, sizeof *j->least_N);
-    j->expected_m = hf_arena_take(arena, n_node, sizeof *j->expected_m);
-    j->out = hf_arena_take(arena, n_cable, sizeof *j->out);
-    j->by_places_m = hf_arena_take(arena, n_cable, sizeof *j->by_places_m);
-    j->far_row = hf_arena_take(arena, n_node, sizeof *j->far_row);
-    j->sized = hf_arena_take(arena, n_cable > n_node ? n_cable : n_node, sizeof *j->sized);
-}
-
 static hf_status allocate_job(job *j, hf_messages *messages)
 {
-    hf_arena arena = {0};
-    if (HF_ARENA_MAKE(&arena, lay_out_job(&arena, j)) != HF_OK)
+    size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
+    if (HF_ARENA_ARRAYS(&j->block, HF_ARRAY(j->cable, n_cable), HF_ARRAY(j->least_N, n_cable),
+                        HF_ARRAY(j->expected_m, n_node), HF_ARRAY(j->out, n_cable), HF_ARRAY(j->by_places_m, n_cable),
+                        HF_ARRAY(j->far_row, n_node), HF_ARRAY(j->sized, n_cable > n_node ? n_cable : n_node)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d cables", j->problem.scene.n_cable);
-    j->block = arena.block;
     return HF_OK;
 }
 
 void hf_adjust_case_free(hf_adjust_case *j)
 {
-    hf_arena arena = {.block = j->block};
     hf_adjust_free(&j->adjustment);
     hf_prior_free(&j->prior);
     hf_objectives_free(&j->objectives);
@@ -431,7 +419,7 @@ void hf_adjust_case_free(hf_adjust_case *j)
     hf_measured_free(&j->measured);
     hf_built_free(&j->built);
     hf_problem_free(&j->problem);
-    hf_arena_free(&arena);
+    hf_arena_free_block(j->block);
 }
 
 hf_status hf_adjust_case_load(const char *path, const char *const *set, int n_set, job *j, hf_messages *messages)

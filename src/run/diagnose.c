@@ -311,7 +311,8 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
 #define FAR_RANGE 3.0 /* a range above this multiple of the maximum value is in doubt */
 #define CLASSES 16    /* maximum number of classes; at least one for each row */
 
-/* What no variable has been seen to change, and rows of variables that have been seen to change nothing. */
+/* What no variable has been seen to change, and rows of variables that have been seen to change nothing. Rows that do
+ * not exist are false. */
 typedef struct {
     bool psi; /* of a case with inner nodes and without objectives */
     bool objective[HF_DESIGN_ROWS_MAX], limit[HF_DESIGN_ROWS_MAX], variable_row[HF_DESIGN_ROWS_MAX];
@@ -368,7 +369,9 @@ static hf_status create_reach(const hf_problem *p, reach *q)
     q->v.limits = NULL;
     q->v.objectives = NULL;
     q->v.n_thread = 1;
-    memset(&q->now, true, sizeof q->now);
+    memset(q->now.objective, true, (size_t)p->objectives.n_objective);
+    memset(q->now.limit, true, (size_t)p->settings.optimize.n_limit);
+    memset(q->now.variable_row, true, (size_t)p->settings.optimize.n_variable_row);
     q->now.psi = p->objectives.n_objective == 0 && p->model.n_inner_node > 0;
     HF_TRY(HF_ARENA_ARRAYS(&q->block, HF_ARRAY(q->leader, m->n_variable), HF_ARRAY(q->design, m->n_variable),
                            HF_ARRAY(q->move_m, 3 * (size_t)m->n_node), HF_ARRAY(q->rate_N, m->n_cable)));
@@ -421,48 +424,45 @@ static bool lengthens(const reach *q, int e)
     return fabs(sum) > ROUNDED * q->most_m;
 }
 
-static bool any_cable(const reach *q, int n, const int *cable, bool (*changes)(const reach *, int))
+/* Returns true if a class changes one of these n cables or rows of nodes. */
+static bool any(const reach *q, int n, const int *at, bool (*changes)(const reach *, int))
 {
     for (int i = 0; i < n; i++)
-        if (changes(q, cable[i])) return true;
+        if (changes(q, at[i])) return true;
     return false;
 }
 
-static bool any_row(const reach *q, int n, const int *row)
-{
-    for (int i = 0; i < n; i++)
-        if (moves_row(q, row[i])) return true;
-    return false;
-}
+/* What of the net an objective is computed from. */
+typedef enum { OF_INNER_NODES, OF_FACETS, OF_TENSIONS, OF_LENGTHS, OF_PULL } source;
+static const source source_of[] = {
+    [HF_FIGURE_PSI] = OF_INNER_NODES, [HF_FIGURE_SURFACE] = OF_INNER_NODES, [HF_FIGURE_FACETS] = OF_FACETS,
+    [HF_FIGURE_GAIN] = OF_FACETS,     [HF_FIGURE_TENSION] = OF_TENSIONS,    [HF_FIGURE_EVENNESS] = OF_TENSIONS,
+    [HF_FIGURE_RATIO] = OF_TENSIONS,  [HF_FIGURE_LENGTH] = OF_LENGTHS,      [HF_FIGURE_MASS] = OF_LENGTHS,
+    [HF_FIGURE_PULL] = OF_PULL,       [HF_FIGURE_DEFLECTION] = OF_PULL,
+};
 
 static bool changes_objective(const reach *q, const hf_objective *g)
 {
     const hf_objectives *objectives = &q->p->objectives;
     if (g->n_net) return true; /* another cut changes the tensions and the shape of an as-built net */
-    switch (g->settings.figure) {
-    case HF_FIGURE_PSI:
-    case HF_FIGURE_SURFACE:
-        return any_row(q, q->model.n_inner_node, q->model.inner_row);
-    case HF_FIGURE_FACETS:
-    case HF_FIGURE_GAIN:
-        return any_row(q, 4 * objectives->n_facet, objectives->corner_row);
-    case HF_FIGURE_TENSION:
-    case HF_FIGURE_EVENNESS:
-    case HF_FIGURE_RATIO:
-        return any_cable(q, g->n_cable, g->cable, pulls_otherwise);
-    case HF_FIGURE_LENGTH:
-    case HF_FIGURE_MASS:
-        return any_cable(q, g->n_cable, g->cable, lengthens);
-    case HF_FIGURE_PULL:
-    case HF_FIGURE_DEFLECTION:
-        return true; /* any change of the shape changes the pull on supports */
+    switch (source_of[g->settings.figure]) {
+    case OF_INNER_NODES:
+        return any(q, q->model.n_inner_node, q->model.inner_row, moves_row);
+    case OF_FACETS:
+        return any(q, 4 * objectives->n_facet, objectives->corner_row, moves_row);
+    case OF_TENSIONS:
+        return any(q, g->n_cable, g->cable, pulls_otherwise);
+    case OF_LENGTHS:
+        return any(q, g->n_cable, g->cable, lengthens);
+    case OF_PULL:
+        break; /* any change of the shape changes the pull on supports */
     }
     return true;
 }
 
 static bool changes_limit(const reach *q, const hf_limit *row)
 {
-    return row->kind == HF_LIMIT_DEFLECTION || any_cable(q, row->n_cable, row->cable, pulls_otherwise);
+    return row->kind == HF_LIMIT_DEFLECTION || any(q, row->n_cable, row->cable, pulls_otherwise);
 }
 
 /* Strikes out the rows that the variables change at the design in the workspace. */
@@ -475,7 +475,7 @@ static void strike(reach *q)
         measure_class(q, of_variable[k]);
         if (!(q->most_m > 0) && !(q->most_N > 0)) continue;
         q->now.variable_row[row_of_variable(&q->model, k)] = false;
-        if (q->now.psi) q->now.psi = !any_row(q, q->model.n_inner_node, q->model.inner_row);
+        if (q->now.psi) q->now.psi = !any(q, q->model.n_inner_node, q->model.inner_row, moves_row);
         for (int i = 0; i < q->p->objectives.n_objective; i++)
             if (q->now.objective[i]) q->now.objective[i] = !changes_objective(q, &q->p->objectives.objective[i]);
         for (int i = 0; i < o->n_limit; i++)
@@ -497,25 +497,14 @@ static void choose_design(reach *q, bool is_beside)
     }
 }
 
-static const char *why_objective(hf_figure_kind kind)
-{
-    switch (kind) {
-    case HF_FIGURE_PSI:
-    case HF_FIGURE_SURFACE:
-    case HF_FIGURE_FACETS:
-    case HF_FIGURE_GAIN:
-        return "none of its nodes moves";
-    case HF_FIGURE_TENSION:
-    case HF_FIGURE_EVENNESS:
-    case HF_FIGURE_RATIO:
-        return "all of its cables keep their tensions";
-    case HF_FIGURE_LENGTH:
-    case HF_FIGURE_MASS:
-        return "all of its cables keep their lengths";
-    default:
-        return "the pull on the supports does not change";
-    }
-}
+/* Why an objective of each source is constant. */
+static const char *const why_constant[] = {
+    [OF_INNER_NODES] = "none of its nodes moves",
+    [OF_FACETS] = "none of its nodes moves",
+    [OF_TENSIONS] = "all of its cables keep their tensions",
+    [OF_LENGTHS] = "all of its cables keep their lengths",
+    [OF_PULL] = "the pull on the supports does not change",
+};
 
 static hf_status tell_objectives(const reach *q, hf_messages *messages)
 {
@@ -528,7 +517,7 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
         if (!q->now.objective[i]) continue;
         hf_config_place(&q->p->settings, place, "optimize.%s.%d", is_front ? "front" : "objective", i);
         hf_objectives_name(objectives, i, name);
-        const char *why = why_objective(objectives->objective[i].settings.figure);
+        const char *why = why_constant[source_of[objectives->objective[i].settings.figure]];
         has_fault |= is_front || !is_reached;
         if (is_front || !is_reached)
             hf_error(messages, HF_BAD_CASE,
@@ -555,8 +544,7 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
         if (q->now.limit[i])
             hf_warning(messages, "%s: no design variable of this case changes the limited figure: %s",
                        hf_config_place(&q->p->settings, place, "optimize.limits.%d", i),
-                       o->limit[i].figure == HF_LIMIT_DEFLECTION ? why_objective(HF_FIGURE_DEFLECTION)
-                                                                 : why_objective(HF_FIGURE_TENSION));
+                       why_constant[o->limit[i].figure == HF_LIMIT_DEFLECTION ? OF_PULL : OF_TENSIONS]);
     if (q->p->objectives.n_objective > 0) return tell_objectives(q, messages);
     if (!q->now.psi) return HF_OK;
     return hf_error(
@@ -564,25 +552,14 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
         "%s: no design variable of this case changes psi: %s. Add a design variable that does, or use another "
         "optimize.objective",
         hf_config_place(&q->p->settings, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
-        why_objective(HF_FIGURE_PSI));
-}
-
-/* Returns true if a row remains that no variable has been seen to change, or that has changed nothing. */
-static bool is_open(const reach *q)
-{
-    const hf_optimize_settings *o = &q->p->settings.optimize;
-    bool is = q->now.psi;
-    for (int i = 0; i < HF_DESIGN_ROWS_MAX; i++)
-        is |= (i < q->p->objectives.n_objective && q->now.objective[i]) || (i < o->n_limit && q->now.limit[i]) ||
-              (i < o->n_variable_row && q->now.variable_row[i]);
-    return is;
+        why_constant[OF_INNER_NODES]);
 }
 
 /* Examines both designs. Returns HF_OK, also if the second one has no shape; HF_NOT_EVALUATED if the first one has
  * none; HF_NO_MEMORY. */
 static hf_status look_at_reach(reach *q)
 {
-    for (int i = 0; i < 2 && (i == 0 || is_open(q)); i++) {
+    for (int i = 0; i < 2 && (i == 0 || memchr(&q->now, true, sizeof q->now)); i++) {
         hf_form_result r;
         choose_design(q, i > 0);
         hf_status status = hf_evaluate(&q->v, q->design, &q->w, NULL, &r);
@@ -764,26 +741,17 @@ static void count_rows(hf_places *to, const int *row, int n, hf_counted how)
         if (to->counted[row[i]] < how) to->counted[row[i]] = (unsigned char)how;
 }
 
+/* Forces, and sums of lengths, do not fix positions. */
 static void count_objective(const hf_problem *p, const hf_objective *g, hf_places *to)
 {
     const hf_model *m = &p->model;
-    switch (g->settings.figure) {
-    case HF_FIGURE_PSI:
-    case HF_FIGURE_SURFACE:
-        count_rows(to, m->inner_row, m->n_inner_node,
-                   g->settings.figure == HF_FIGURE_PSI ? HF_COUNTED : HF_COUNTED_ACROSS);
-        break;
-    case HF_FIGURE_FACETS:
-    case HF_FIGURE_GAIN:
+    hf_figure_kind figure = g->settings.figure;
+    if (source_of[figure] == OF_INNER_NODES)
+        count_rows(to, m->inner_row, m->n_inner_node, figure == HF_FIGURE_PSI ? HF_COUNTED : HF_COUNTED_ACROSS);
+    if (source_of[figure] == OF_FACETS)
         count_rows(to, p->objectives.corner_row, 4 * p->objectives.n_facet, HF_COUNTED_ACROSS);
-        break;
-    case HF_FIGURE_LENGTH:
-        for (int i = 0; i < g->n_cable; i++)
-            count_rows(to, m->end_row + 2 * (ptrdiff_t)g->cable[i], 2, HF_COUNTED);
-        break;
-    default: /* forces, and sums of lengths, do not fix positions */
-        break;
-    }
+    for (int i = 0; i < g->n_cable && figure == HF_FIGURE_LENGTH; i++)
+        count_rows(to, m->end_row + 2 * (ptrdiff_t)g->cable[i], 2, HF_COUNTED);
 }
 
 static void find_cables(const hf_model *m, hf_places *to)
