@@ -372,7 +372,7 @@ static hf_status command_check(const hf_options *o, FILE *file, hf_messages *mes
                                       .threads = o->threads ? o->threads : hf_batch_default_threads()};
     hf_status status = hf_study_is(o->file) ? hf_cmd_check_study(&request, &check, file, messages)
                                             : hf_cmd_check_case(&request, o->file, &check, file, messages);
-    hf_check_free(&check);
+    hf_problem_free(&check.problem);
     return status;
 }
 

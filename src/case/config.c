@@ -36,11 +36,18 @@ static void complain(loader *l, yaml_mark_t mark, const char *path, const char *
 
 /* ---- looking up keys ---- */
 
-static int find_section(const char *path)
+static const hf_section *find_section(const char *path)
 {
     for (int i = 0; i < hf_n_section; i++)
-        if (!strcmp(hf_section_table[i].path, path)) return i;
-    return -1;
+        if (!strcmp(hf_section_table[i].path, path)) return &hf_section_table[i];
+    return NULL;
+}
+
+/* Notes that the case has this section, if the path is that of a section that can be omitted. */
+static void note_section(loader *l, const char *path)
+{
+    const hf_section *section = find_section(path);
+    if (section && section->present_offset != SIZE_MAX) *(bool *)((char *)l->c + section->present_offset) = true;
 }
 
 /* Returns the part of `path` below `prefix` if `path` is a direct child of it, else NULL. */
@@ -252,7 +259,7 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
         l->c->has_sweep = true;
         l->cut[0] = key_mark;
         l->cut[1] = value->end_mark;
-    } else if (!fits || find_section(path) < 0) {
+    } else if (!fits || !find_section(path)) {
         if (!fits || !complain_of_row(l, key_mark, path)) complain_unknown(l, key_mark, prefix, key);
     } else if (value->type != YAML_MAPPING_NODE) {
         complain(l, key_mark, path, "must be a section of key: value lines", " ({} takes every default)");
@@ -263,9 +270,7 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
 {
-    int i_section = find_section(prefix);
-    if (i_section >= 0 && hf_section_table[i_section].present_offset != SIZE_MAX)
-        *(bool *)((char *)l->c + hf_section_table[i_section].present_offset) = true;
+    note_section(l, prefix);
     for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++) {
         const yaml_node_t *key = yaml_document_get_node(l->document, p->key);
         const yaml_node_t *value = yaml_document_get_node(l->document, p->value);
@@ -412,24 +417,21 @@ static void use_override(loader *l, const yaml_node_t *root, const void *context
     }
     if (dot) *dot = '\0';
     take(l, root, start, dot ? path : "", dot ? dot + 1 : path);
-    /* a key inside a section makes the section present */
-    for (int i = 0; dot && i < hf_n_section; i++)
-        if (!strcmp(hf_section_table[i].path, path) && hf_section_table[i].present_offset != SIZE_MAX)
-            *(bool *)((char *)l->c + hf_section_table[i].present_offset) = true;
+    if (dot) note_section(l, path); /* a key inside a section makes the section present */
 }
 
 static void apply_override(loader *l, const char *argument)
 {
     char path[HF_KEY_SIZE];
     const char *equals = strchr(argument, '=');
-    if (!equals || equals == argument || equals - argument >= HF_KEY_SIZE) {
+    const char *fault = NULL;
+    if (!equals || equals == argument || equals - argument >= HF_KEY_SIZE)
+        fault = "must be key=value, like form.pretension_N=12";
+    else if (strchr(argument, '\n')) /* a result stores one override per line */
+        fault = "must be on one line";
+    if (fault) {
         l->faults.failed = true;
-        hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be key=value, like form.pretension_N=12", argument);
-        return;
-    }
-    if (strchr(argument, '\n')) { /* a result stores one override per line */
-        l->faults.failed = true;
-        hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: must be on one line", argument);
+        hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: %s", argument, fault);
         return;
     }
     snprintf(path, sizeof path, "%.*s", (int)(equals - argument), argument);

@@ -291,7 +291,7 @@ static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mappin
         to->is_faulty = false;
 }
 
-/* Sets the values of a range at x[0], x[stride], ... in 0..1. */
+/* Sets the values of a range at x[0], x[stride], ... in 0..1, or in even steps if x is NULL. */
 static void fill_range(reader *r, int a, const double *x, int stride)
 {
     hf_study_axis *axis = &r->study->axis[a];
@@ -301,23 +301,11 @@ static void fill_range(reader *r, int a, const double *x, int stride)
     bool failed_before = r->failed;
     r->failed = false;
     for (int i = 0; i < axis->n_value && !r->failed; i++) { /* reports only the first bad value of a range */
-        hf_study_range_value(axis->key.field, from->from, from->to, from->is_log, x[(size_t)i * (size_t)stride], text);
+        double part = x ? x[(size_t)i * (size_t)stride] : axis->n_value > 1 ? i / (axis->n_value - 1.0) : 0;
+        hf_study_range_value(axis->key.field, from->from, from->to, from->is_log, part, text);
         set_value(r, axis, i, text, true, from->mark);
     }
     r->failed |= failed_before;
-}
-
-static void fill_even(reader *r, int a)
-{
-    int n = r->study->axis[a].n_value;
-    double *x = malloc((size_t)n * sizeof *x);
-    for (int i = 0; x && i < n; i++)
-        x[i] = n > 1 ? i / (n - 1.0) : 0;
-    if (x)
-        fill_range(r, a, x, 1);
-    else
-        r->no_memory = true;
-    free(x);
 }
 
 /* Sets the values of all sampled axes of one kind, as one joint axis. */
@@ -363,7 +351,7 @@ static void fill_axes(reader *r)
         else if (r->source[a].list)
             fill_list(r, &r->study->axis[a], r->source[a].list);
         else if (r->source[a].sample == SAMPLE_NONE)
-            fill_even(r, a);
+            fill_range(r, a, NULL, 0);
     fill_sampled(r, SAMPLE_LATIN_HYPERCUBE);
     fill_sampled(r, SAMPLE_SOBOL);
 }
@@ -414,15 +402,15 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
         return;
     }
     hf_study_axis *axis = &s->axis[s->n_axis++];
+    source *to = &r->source[s->n_axis - 1];
     *axis =
         (hf_study_axis){.key = found, .line = (int)key->start_mark.line + 1, .column = (int)key->start_mark.column + 1};
+    to->is_faulty = value->type == YAML_SCALAR_NODE;
     if (value->type == YAML_SEQUENCE_NODE)
-        read_list(r, axis, value, &r->source[s->n_axis - 1]);
+        read_list(r, axis, value, to);
     else if (value->type == YAML_MAPPING_NODE)
-        read_range(r, axis, value, &r->source[s->n_axis - 1]);
+        read_range(r, axis, value, to);
     else
-        r->source[s->n_axis - 1].is_faulty = true;
-    if (value->type == YAML_SCALAR_NODE)
         fault(r, value->start_mark, path, "must be a list of values, or {from, to, n}");
 }
 

@@ -310,11 +310,6 @@ hf_status hf_check_try(hf_check *c, hf_messages *messages)
     return time_optimisation(c, &evaluator) == HF_OK ? HF_OK : hf_error(messages, HF_NO_MEMORY, "out of memory");
 }
 
-void hf_check_free(hf_check *c)
-{
-    hf_problem_free(&c->problem);
-}
-
 /* ---- the points of a study ---- */
 
 hf_status hf_check_study_points(const hf_study *s, hf_problem *scratch, hf_check_points *t, hf_messages *messages)

@@ -71,14 +71,12 @@ typedef struct {
 } hf_check;
 
 /* Loads the case and finds what does not need a trial. *check must be zero on entry. Returns HF_OK; HF_BAD_CASE with
- * all faults; or the status of another failure, with a message. The caller calls hf_check_free in any case. */
+ * all faults; or the status of another failure, with a message. The caller frees check->problem in any case. */
 hf_status hf_check_load(const hf_check_request *request, hf_check *check, hf_messages *messages);
 
 /* Tries the stages of the run, after hf_check_load, for about a second each. Returns HF_OK, the status of an ill-posed
  * scene, or that of another failure, with a message. What was found until then is valid. */
 hf_status hf_check_try(hf_check *check, hf_messages *messages);
-
-void hf_check_free(hf_check *check);
 
 /* Returns the time of n > 0 tasks of each_s, which run in parallel, each in one thread. *threads becomes the number of
  * threads with work. */

@@ -1,28 +1,23 @@
 /* Finds the shape of the case, explains, measures and stores it. */
 #include "run/stages.h"
 
+#include "base/arena.h"
 #include "base/clock.h"
 #include "run/problem_parts.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #define HISTORY_MAX 1000000 /* maximum number of iterations in the history */
 
-static hf_status create_history(const hf_form_settings *s, bool has_truss, hf_history *h)
+static hf_status create_history(const hf_form_settings *s, bool has_truss, hf_history *h, void **block)
 {
     h->capacity = s->max_iterations < HISTORY_MAX ? s->max_iterations : HISTORY_MAX;
     size_t n = (size_t)h->capacity, n_coupling = has_truss ? (size_t)s->coupling.max_iterations : 0;
-    double *block = calloc(5 * n + 3 * n_coupling, sizeof *block);
-    if (!block) return HF_NO_MEMORY;
-    h->psi_m = block;
-    h->residual_N = block + n;
-    h->inner_tension_ratio = block + 2 * n;
-    h->boundary_tension_ratio = block + 3 * n;
-    h->length_error = block + 4 * n;
-    double *more = block + 5 * n;
-    h->coupling = (hf_coupling_history){(int)n_coupling, 0, more, more + n_coupling, more + 2 * n_coupling};
-    return HF_OK;
+    h->coupling.capacity = (int)n_coupling;
+    return HF_ARENA_ARRAYS(block, HF_ARRAY(h->psi_m, n), HF_ARRAY(h->residual_N, n),
+                           HF_ARRAY(h->inner_tension_ratio, n), HF_ARRAY(h->boundary_tension_ratio, n),
+                           HF_ARRAY(h->length_error, n), HF_ARRAY(h->coupling.step_m, n_coupling),
+                           HF_ARRAY(h->coupling.psi_m, n_coupling), HF_ARRAY(h->coupling.deflection_max_m, n_coupling));
 }
 
 /* Measures and stores the shape in the problem's workspace. Returns HF_INTERRUPTED for an interrupted measurement after
@@ -46,9 +41,10 @@ hf_status hf_stage_form(hf_run *r, hf_summary *s, hf_messages *messages)
     hf_problem *p = &r->problem;
     hf_stage_summary *to = &s->stage[HF_STAGE_FORM];
     hf_history history = {0};
+    void *block;
     HF_TRY(hf_problem_allocate(p, messages));
     p->workspace.stop = r->request->control.stop_requested;
-    if (create_history(&p->settings.form, p->model.n_attachment > 0, &history) != HF_OK)
+    if (create_history(&p->settings.form, p->model.n_attachment > 0, &history, &block) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for a net of %d nodes", p->model.n_node);
     hf_run_report(&r->request->control, (hf_run_progress){.phase = HF_RUN_FORM, .best_psi_m = NAN, .merit = NAN});
     double start_s = hf_clock_s();
@@ -59,6 +55,6 @@ hf_status hf_stage_form(hf_run *r, hf_summary *s, hf_messages *messages)
     for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++) /* measured in hf_stage_begin, with the initial design */
         to->result.objective[k] = (double)NAN;
     hf_status status = keep_form(r, &history, s, messages);
-    free(history.psi_m);
+    hf_arena_free_block(block);
     return status;
 }
