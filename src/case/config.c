@@ -144,11 +144,6 @@ static void with_document(loader *l, const char *text, size_t length,
                           void (*use)(loader *, const yaml_node_t *, const void *), const void *context);
 static void use_default(loader *l, const yaml_node_t *root, const void *context);
 
-static const char *key_text(const yaml_node_t *node)
-{
-    return (const char *)node->data.scalar.value;
-}
-
 /* Reports a key that the file sets twice, once by its old name. */
 static bool is_given_already(loader *l, const yaml_node_t *node, const hf_key *key)
 {
@@ -164,7 +159,7 @@ static bool set_old_word(loader *l, const yaml_node_t *node, const hf_key *key)
     char old[2 * HF_KEY_SIZE], now[HF_KEY_SIZE];
     hf_key to;
     if (key->field->type != HF_FIELD_WORD || node->type != YAML_SCALAR_NODE) return false;
-    snprintf(old, sizeof old, "%s=%s", key->path, key_text(node));
+    snprintf(old, sizeof old, "%s=%s", key->path, hf_config_text(node));
     if (!hf_config_rename(&l->faults, node->start_mark.line, node->start_mark.column, old, now)) return false;
     char *word = strchr(now, '=');
     *word++ = '\0';
@@ -278,15 +273,11 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
             complain(l, key->start_mark, *prefix ? prefix : "case", "a key must be a plain word", "");
             continue;
         }
-        const char *word = key_text(key);
-        yaml_node_pair_t *earlier = mapping->data.mapping.pairs.start;
-        for (; earlier < p; earlier++) {
-            const yaml_node_t *other = yaml_document_get_node(l->document, earlier->key);
-            if (other->type == YAML_SCALAR_NODE && !strcmp(key_text(other), word)) break;
-        }
-        if (earlier < p) {
+        const char *word = hf_config_text(key);
+        const yaml_node_t *earlier = hf_config_earlier_key(l->document, mapping, p);
+        if (earlier) {
             char line[48];
-            snprintf(line, sizeof line, "%zu", yaml_document_get_node(l->document, earlier->key)->start_mark.line + 1);
+            snprintf(line, sizeof line, "%zu", earlier->start_mark.line + 1);
             complain(l, key->start_mark, word, "this key stands here already, on line ", line);
         } else {
             take(l, value, key->start_mark, prefix, word);
@@ -370,7 +361,7 @@ static bool has_key_of_case(loader *l, const yaml_node_t *root)
     bool is_empty = p == end;
     for (; p < end; p++) {
         const yaml_node_t *key = yaml_document_get_node(l->document, p->key);
-        const char *word = key->type == YAML_SCALAR_NODE ? key_text(key) : "";
+        const char *word = hf_config_text(key);
         if (!strcmp(word, "sweep") || !strcmp(word, "base")) return true;
         if (hf_config_suggestion("", word) || nearest_key("", word) || key_elsewhere(word)) return true;
     }

@@ -33,14 +33,20 @@ static const yaml_node_t *item_of(setter *s, const yaml_node_t *list, int i)
     return yaml_document_get_node(s->document, list->data.sequence.items.start[i]);
 }
 
-static const char *scalar_text(const yaml_node_t *node)
-{
-    return (const char *)node->data.scalar.value;
-}
-
 static bool is_plain(const yaml_node_t *node)
 {
     return node->type == YAML_SCALAR_NODE && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
+}
+
+const yaml_node_t *hf_config_earlier_key(yaml_document_t *document, const yaml_node_t *mapping,
+                                         const yaml_node_pair_t *pair)
+{
+    const yaml_node_t *key = yaml_document_get_node(document, pair->key);
+    for (const yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < pair; p++) {
+        const yaml_node_t *earlier = yaml_document_get_node(document, p->key);
+        if (earlier->type == key->type && !strcmp(hf_config_text(earlier), hf_config_text(key))) return earlier;
+    }
+    return NULL;
 }
 
 void hf_config_range_words(const hf_field *f, char words[HF_CONFIG_RANGE_SIZE])
@@ -60,7 +66,7 @@ static void refuse_range(setter *s, const yaml_node_t *node, const hf_field *f)
 {
     char what[HF_CONFIG_RANGE_SIZE];
     hf_config_range_words(f, what);
-    refuse(s, node, f, what, scalar_text(node));
+    refuse(s, node, f, what, hf_config_text(node));
 }
 
 bool hf_config_is_in_range(const hf_field *f, const char *text)
@@ -83,7 +89,7 @@ static void set_word(setter *s, const yaml_node_t *node, const hf_field *f, void
     int n = 0;
     if (node->type == YAML_SCALAR_NODE)
         for (int k = 0; f->words[k]; k++)
-            if (!strcmp(f->words[k], scalar_text(node))) {
+            if (!strcmp(f->words[k], hf_config_text(node))) {
                 memcpy(to, &k, sizeof k);
                 return;
             }
@@ -93,15 +99,15 @@ static void set_word(setter *s, const yaml_node_t *node, const hf_field *f, void
     }
     strcat(what, ", not ");
     if (node->type == YAML_SCALAR_NODE) {
-        hf_text_hint(scalar_text(node), f->words, n, hint);
-        snprintf(given, sizeof given, "%.300s%s", scalar_text(node), hint);
+        hf_text_hint(hf_config_text(node), f->words, n, hint);
+        snprintf(given, sizeof given, "%.300s%s", hf_config_text(node), hint);
     }
     refuse(s, node, f, what, node->type == YAML_SCALAR_NODE ? given : "a list or section");
 }
 
 static void set_uint64(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
-    if (!is_plain(node) || !hf_text_uint64(scalar_text(node), to))
+    if (!is_plain(node) || !hf_text_uint64(hf_config_text(node), to))
         refuse(s, node, f, "must be a whole number from 0 to 18446744073709551615", "");
 }
 
@@ -111,11 +117,11 @@ static void set_int(setter *s, const yaml_node_t *node, const hf_field *f, void 
     double real = 0;
     if (!is_plain(node))
         refuse(s, node, f, "must be a whole number", "");
-    else if (!hf_text_uint64(scalar_text(node), &value) && !hf_text_double(scalar_text(node), &real))
-        refuse(s, node, f, "must be a whole number, not ", scalar_text(node));
-    else if (strpbrk(scalar_text(node), ".eE"))
-        refuse(s, node, f, "must be a whole number, not ", scalar_text(node));
-    else if (scalar_text(node)[0] == '-' || (double)value < f->min || (double)value > f->max)
+    else if (!hf_text_uint64(hf_config_text(node), &value) && !hf_text_double(hf_config_text(node), &real))
+        refuse(s, node, f, "must be a whole number, not ", hf_config_text(node));
+    else if (strpbrk(hf_config_text(node), ".eE"))
+        refuse(s, node, f, "must be a whole number, not ", hf_config_text(node));
+    else if (hf_config_text(node)[0] == '-' || (double)value < f->min || (double)value > f->max)
         refuse_range(s, node, f);
     else
         *(int *)to = (int)value;
@@ -158,19 +164,19 @@ static void refuse_number(setter *s, const yaml_node_t *node, const hf_field *f)
 {
     if (node->type != YAML_SCALAR_NODE)
         refuse(s, node, f, "must be a number", "");
-    else if (is_not_finite(scalar_text(node)))
-        refuse(s, node, f, "must be a finite number, not ", scalar_text(node));
+    else if (is_not_finite(hf_config_text(node)))
+        refuse(s, node, f, "must be a finite number, not ", hf_config_text(node));
     else
         refuse(s, node, f, "must be a number, not a text",
-               *f->unit && has_unit(scalar_text(node)) ? "; the unit is in the key's name" : "");
+               *f->unit && has_unit(hf_config_text(node)) ? "; the unit is in the key's name" : "");
 }
 
 static void set_double(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     double value;
-    if (is_plain(node) && hf_text_has_decimal_comma(scalar_text(node)))
-        refuse(s, node, f, "has a decimal comma, and numbers have points: ", scalar_text(node));
-    else if (!is_plain(node) || !hf_text_double(scalar_text(node), &value))
+    if (is_plain(node) && hf_text_has_decimal_comma(hf_config_text(node)))
+        refuse(s, node, f, "has a decimal comma, and numbers have points: ", hf_config_text(node));
+    else if (!is_plain(node) || !hf_text_double(hf_config_text(node), &value))
         refuse_number(s, node, f);
     else if (value < f->min || value > f->max)
         refuse_range(s, node, f);
@@ -210,11 +216,11 @@ static void set_amount(setter *s, const yaml_node_t *node, const hf_field *f, vo
     double *to = amount;
     char number[64];
     double value;
-    bool is_part = node->type == YAML_SCALAR_NODE && is_percentage(scalar_text(node), number);
+    bool is_part = node->type == YAML_SCALAR_NODE && is_percentage(hf_config_text(node), number);
     if (!is_part && !is_plain(node))
         refuse(s, node, f, "must be a number, or a part like 30 %", "");
-    else if (!hf_text_double(is_part ? number : scalar_text(node), &value))
-        refuse(s, node, f, "must be a number, or a part like 30 %, not ", scalar_text(node));
+    else if (!hf_text_double(is_part ? number : hf_config_text(node), &value))
+        refuse(s, node, f, "must be a number, or a part like 30 %, not ", hf_config_text(node));
     else if (value < f->min || value > f->max)
         refuse_range(s, node, f);
     else {
@@ -228,7 +234,7 @@ static bool is_open(const yaml_node_t *node, bool is_upper)
 {
     const char *const word[] = {"null", "~", ".", is_upper ? ".inf" : "-.inf"};
     for (size_t k = 0; is_plain(node) && k < sizeof word / sizeof *word; k++)
-        if (!strcmp(scalar_text(node), word[k])) return true;
+        if (!strcmp(hf_config_text(node), word[k])) return true;
     return false;
 }
 
@@ -269,13 +275,13 @@ static void set_vector(setter *s, const yaml_node_t *node, const hf_field *f, vo
 static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     size_t size = (size_t)f->max;
-    if (node->type != YAML_SCALAR_NODE || (f->min > 0 && !*scalar_text(node))) {
+    if (node->type != YAML_SCALAR_NODE || (f->min > 0 && !*hf_config_text(node))) {
         refuse(s, node, f, "must be a text", "");
         return;
     }
     /* Paths in a case file are relative to that file, paths on the command line to the current folder. */
     const char *beside = size == HF_PATH_SIZE && !s->faults->is_override ? s->case_path : "";
-    if (!hf_path_beside(beside, scalar_text(node), to, size)) refuse(s, node, f, "is too long", "");
+    if (!hf_path_beside(beside, hf_config_text(node), to, size)) refuse(s, node, f, "is too long", "");
 }
 
 void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node, const hf_field *f,

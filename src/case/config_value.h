@@ -10,6 +10,16 @@
 void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node,
                      const hf_field *field, const char *case_path, void *to);
 
+/* Returns the text of a scalar, and "" for a list or a section. */
+static inline const char *hf_config_text(const yaml_node_t *node)
+{
+    return node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : "";
+}
+
+/* Returns the key of the mapping that is the same as the key of `pair` and before it, or NULL. */
+const yaml_node_t *hf_config_earlier_key(yaml_document_t *document, const yaml_node_t *mapping,
+                                         const yaml_node_pair_t *pair);
+
 /* Returns true if the text is a number within the range of a key of one number. Also returns false for values that only
  * hf_config_value can check. */
 bool hf_config_is_in_range(const hf_field *field, const char *text);

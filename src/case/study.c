@@ -301,13 +301,6 @@ static hf_status learn_from(hf_study *s, int i, hf_case *c, hf_messages *message
     return HF_OK;
 }
 
-/* Reports a fault of the machine, which is no fault of a point. */
-static void tell_trouble(hf_status status, const hf_messages *found, hf_messages *messages)
-{
-    const char *why = hf_text_first_error(found->text, hf_status_text(status));
-    hf_error(messages, status, "%.*s", (int)strcspn(why, "\n"), why);
-}
-
 /* Loads points until one is valid, because some combinations may be impossible. If none of the tried points is valid,
  * the fault is in the base case or in an axis. The faults of the first point are then reported. */
 static hf_status learn_from_a_point(hf_study *s, hf_messages *messages)
@@ -319,7 +312,9 @@ static hf_status learn_from_a_point(hf_study *s, hf_messages *messages)
     for (int k = 0; k < s->n_point && k < TRIED_MOST && status == HF_BAD_CASE; k++) {
         hf_messages found = {0}, *to = k ? &found : &first;
         status = learn_from(s, hf_study_spread(s, k), c, to);
-        if (status != HF_OK && status != HF_BAD_CASE) tell_trouble(status, to, messages);
+        const char *why = hf_text_first_error(to->text, hf_status_text(status));
+        if (status != HF_OK && status != HF_BAD_CASE) /* a fault of the machine, which is no fault of a point */
+            hf_error(messages, status, "%.*s", (int)strcspn(why, "\n"), why);
         /* All lines are warnings: of old names in the base case. */
         for (const char *line = to->text; status == HF_OK && line && *line; line = strchr(line, '\n') + 1)
             hf_warning(messages, "%.*s", (int)strcspn(line, "\n") - 9, line + 9);

@@ -65,11 +65,6 @@ static const yaml_node_t *node_at(reader *r, int index)
     return yaml_document_get_node(r->document, index);
 }
 
-static const char *text_of(const yaml_node_t *node)
-{
-    return node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : "";
-}
-
 static void fault_unknown(reader *r, yaml_mark_t mark, const char *key, const char *word, const char *const *names,
                           int n_name)
 {
@@ -83,30 +78,26 @@ static void fault_unknown(reader *r, yaml_mark_t mark, const char *key, const ch
 /* Returns true and reports a fault if the mapping has this key before `pair`. */
 static bool is_repeated(reader *r, const yaml_node_t *mapping, const yaml_node_pair_t *pair, const char *path)
 {
-    const yaml_node_t *key = node_at(r, pair->key);
-    for (const yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < pair; p++) {
-        const yaml_node_t *other = node_at(r, p->key);
-        if (strcmp(text_of(other), text_of(key))) continue;
-        fault(r, key->start_mark, path, "'%s' stands here already, on line %zu", text_of(key),
-              other->start_mark.line + 1);
-        return true;
-    }
-    return false;
+    const yaml_node_t *key = node_at(r, pair->key), *earlier = hf_config_earlier_key(r->document, mapping, pair);
+    if (earlier)
+        fault(r, key->start_mark, path, "'%s' stands here already, on line %zu", hf_config_text(key),
+              earlier->start_mark.line + 1);
+    return earlier;
 }
 
 static bool read_number(reader *r, const yaml_node_t *node, const char *key, const char *name, double *value)
 {
-    if (hf_text_double(text_of(node), value)) return true;
-    fault(r, node->start_mark, key, "%s must be a number, not '%s'", name, text_of(node));
+    if (hf_text_double(hf_config_text(node), value)) return true;
+    fault(r, node->start_mark, key, "%s must be a number, not '%s'", name, hf_config_text(node));
     return false;
 }
 
 static void read_count(reader *r, const yaml_node_t *node, const char *key, int *n)
 {
     uint64_t value = 0;
-    if (!hf_text_uint64(text_of(node), &value) || value < 1 || value > HF_STUDY_POINT_MAX)
+    if (!hf_text_uint64(hf_config_text(node), &value) || value < 1 || value > HF_STUDY_POINT_MAX)
         fault(r, node->start_mark, key, "n must be a whole number from 1 to %d, not '%s'", HF_STUDY_POINT_MAX,
-              text_of(node));
+              hf_config_text(node));
     else
         *n = (int)value;
 }
@@ -117,10 +108,10 @@ static int read_word(reader *r, const yaml_node_t *node, const char *key, const 
 {
     char list[200] = "";
     for (int k = 0; k < n_word; k++) {
-        if (!strcmp(text_of(node), words[k])) return k;
+        if (!strcmp(hf_config_text(node), words[k])) return k;
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? ", " : "", words[k]);
     }
-    fault(r, node->start_mark, key, "%s must be one of %s, not '%s'", name, list, text_of(node));
+    fault(r, node->start_mark, key, "%s must be one of %s, not '%s'", name, list, hf_config_text(node));
     return 0;
 }
 
@@ -130,11 +121,12 @@ static int read_word(reader *r, const yaml_node_t *node, const char *key, const 
 static bool value_text(reader *r, const yaml_node_t *node, char *text)
 {
     size_t used = 0;
-    if (node->type == YAML_SCALAR_NODE) return snprintf(text, VALUE_SIZE, "%s", text_of(node)) < VALUE_SIZE;
+    if (node->type == YAML_SCALAR_NODE) return snprintf(text, VALUE_SIZE, "%s", hf_config_text(node)) < VALUE_SIZE;
     if (node->type != YAML_SEQUENCE_NODE) return false;
     for (const int *item = node->data.sequence.items.start; item < node->data.sequence.items.top; item++) {
         if (node_at(r, *item)->type != YAML_SCALAR_NODE) return false;
-        used += (size_t)snprintf(text + used, VALUE_SIZE - used, "%s%s", used ? "," : "[", text_of(node_at(r, *item)));
+        used += (size_t)snprintf(text + used, VALUE_SIZE - used, "%s%s", used ? "," : "[",
+                                 hf_config_text(node_at(r, *item)));
         if (used + 2 >= VALUE_SIZE) return false;
     }
     snprintf(text + used, VALUE_SIZE - used, "]");
@@ -240,7 +232,7 @@ static bool read_end(reader *r, const hf_key *key, const yaml_node_t *node, cons
     if (!read_number(r, node, key->path, name, value)) return false;
     if (*value <= f->max && *value >= (f->min == HF_ABOVE_ZERO ? 0 : f->min)) return true;
     hf_config_range_words(f, words);
-    fault(r, node->start_mark, key->path, "%s %s%s", name, words, text_of(node));
+    fault(r, node->start_mark, key->path, "%s %s%s", name, words, hf_config_text(node));
     return false;
 }
 
@@ -250,7 +242,7 @@ static void read_range_key(reader *r, const hf_key *of, const yaml_node_t *key, 
     static const char *const names[] = {"from", "to", "n", "spacing", "sample"};
     static const char *const spacings[] = {"linear", "log"};
     static const char *const samplings[] = {"latin_hypercube", "sobol"}; /* in the order of `sampling` */
-    const char *word = text_of(key), *path = of->path;
+    const char *word = hf_config_text(key), *path = of->path;
     if (!strcmp(word, "from"))
         given[0] = read_end(r, of, value, word, &to->from);
     else if (!strcmp(word, "to"))
@@ -383,7 +375,7 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
     hf_study *s = r->study;
     hf_key found;
     int n = 0;
-    hf_config_rename(&r->faults, key->start_mark.line, key->start_mark.column, text_of(key), path);
+    hf_config_rename(&r->faults, key->start_mark.line, key->start_mark.column, hf_config_text(key), path);
     for (int i = 0; i < hf_n_field && n < 250; i++)
         names[n++] = hf_field_table[i].path;
     for (int i = 0; i < 4; i++)
@@ -424,7 +416,7 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
     }
     for (yaml_node_pair_t *p = mapping->data.mapping.pairs.start; p < mapping->data.mapping.pairs.top; p++) {
         const yaml_node_t *key = node_at(r, p->key), *value = node_at(r, p->value);
-        const char *word = text_of(key);
+        const char *word = hf_config_text(key);
         if (is_repeated(r, mapping, p, "")) continue;
         if (!strcmp(word, "n"))
             read_count(r, value, "", &r->n);
@@ -433,9 +425,9 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
         else if (!strcmp(word, "files"))
             s->files = (hf_study_files)read_word(r, value, "", word, hf_study_files_word, 3);
         else if (!strcmp(word, "seed")) {
-            if (!hf_text_uint64(text_of(value), &r->seed))
+            if (!hf_text_uint64(hf_config_text(value), &r->seed))
                 fault(r, value->start_mark, "", "seed must be a whole number from 0 to 2^64-1, not '%s'",
-                      text_of(value));
+                      hf_config_text(value));
         } else
             read_axis(r, key, value);
     }
@@ -452,7 +444,7 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
 static void read_base(reader *r, const yaml_node_t *node)
 {
     hf_study *s = r->study;
-    const char *name = text_of(node);
+    const char *name = hf_config_text(node);
     if (!*name)
         fault(r, node->start_mark, "", "base must be the name of a case file");
     else if (!hf_path_beside(s->path, name, s->base, sizeof s->base))
@@ -461,7 +453,7 @@ static void read_base(reader *r, const yaml_node_t *node)
 
 static void read_title(reader *r, const yaml_node_t *node)
 {
-    const char *text = text_of(node);
+    const char *text = hf_config_text(node);
     size_t size = sizeof r->study->title;
     if (node->type != YAML_SCALAR_NODE || strchr(text, '\n'))
         fault(r, node->start_mark, "", "title must be a text on one line");
@@ -485,7 +477,7 @@ static void find_names(yaml_document_t *document, const yaml_node_t *root, const
 {
     if (!root || root->type != YAML_MAPPING_NODE) return;
     for (yaml_node_pair_t *p = root->data.mapping.pairs.start; p < root->data.mapping.pairs.top; p++) {
-        int k = name_of(text_of(yaml_document_get_node(document, p->key)), root_name, N_ROOT_NAME);
+        int k = name_of(hf_config_text(yaml_document_get_node(document, p->key)), root_name, N_ROOT_NAME);
         if (k >= 0) found[k] = yaml_document_get_node(document, p->value);
     }
 }
@@ -503,8 +495,8 @@ static void read_root(reader *r, const yaml_node_t *root)
     for (yaml_node_pair_t *p = root->data.mapping.pairs.start; base && p < root->data.mapping.pairs.top; p++) {
         const yaml_node_t *key = node_at(r, p->key);
         if (is_repeated(r, root, p, "")) continue;
-        if (name_of(text_of(key), root_name, N_ROOT_NAME) < 0)
-            fault_unknown(r, key->start_mark, "", text_of(key), root_name, N_ROOT_NAME);
+        if (name_of(hf_config_text(key), root_name, N_ROOT_NAME) < 0)
+            fault_unknown(r, key->start_mark, "", hf_config_text(key), root_name, N_ROOT_NAME);
     }
     snprintf(r->study->base, sizeof r->study->base, "%s", r->study->path);
     if (base) read_base(r, base);

@@ -176,29 +176,19 @@ int hf_flat_open_net(hf_flat *f, const char *name, const char *text, int n_set, 
 
 enum { COLUMN_NAME, COLUMN_UNIT, COLUMN_HELP, COLUMN_KIND };
 
-static const char *kind_word(hf_result_kind kind)
-{
-    switch (kind) {
-    case HF_RESULT_REAL:
-        return "real";
-    case HF_RESULT_STATUS:
-        return "status";
-    case HF_RESULT_STOP_REASON:
-        return "stop_reason";
-    case HF_RESULT_COUPLING_STOP:
-        return "coupling_stop";
-    case HF_RESULT_BOUND_REASON:
-        return "bound_reason";
-    default:
-        return "int";
-    }
-}
-
 static const char *of_field(const hf_result_field *field, int column)
 {
+    static const char *const kind_word[] = {
+        [HF_RESULT_REAL] = "real",
+        [HF_RESULT_INT] = "int",
+        [HF_RESULT_STATUS] = "status",
+        [HF_RESULT_STOP_REASON] = "stop_reason",
+        [HF_RESULT_COUPLING_STOP] = "coupling_stop",
+        [HF_RESULT_BOUND_REASON] = "bound_reason",
+    };
     if (column == COLUMN_UNIT) return field->units ? field->units : "";
     if (column == COLUMN_HELP) return field->description;
-    return column == COLUMN_KIND ? kind_word(field->kind) : field->name;
+    return column == COLUMN_KIND ? kind_word[field->kind] : field->name;
 }
 
 static const char *of_objective(hf_flat *f, int i, int column)
@@ -390,27 +380,22 @@ int hf_flat_reals(const hf_flat *f, const char *name, double *to)
 #define NEEDS_CASE "open a case first"
 #define NEEDS_SHAPE "the case has no shape yet: hf_flat_form finds it"
 
-static hf_status find_form(hf_flat *f)
+int hf_flat_form(hf_flat *f)
 {
     hf_problem *p = &f->problem;
     hf_form_result *r = &f->result;
     if (!begins(f, f->is_open, NEEDS_CASE)) return HF_BAD_USAGE;
-    if (!p->workspace.block) HF_TRY(hf_problem_allocate(p, &f->messages));
+    if (!p->workspace.block) TRY(hf_problem_allocate(p, &f->messages));
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
-    HF_TRY(keep_shape(f, &p->workspace));
+    TRY(keep_shape(f, &p->workspace));
     *r = p->form;
-    HF_TRY(hf_problem_explain(p, &f->messages));
-    if (!f->is_ready) HF_TRY(hf_problem_prepare(p, f->n_thread, &f->messages));
+    TRY(hf_problem_explain(p, &f->messages));
+    if (!f->is_ready) TRY(hf_problem_prepare(p, f->n_thread, &f->messages));
     f->is_ready = true;
     if (p->objectives.n_objective &&
         hf_objectives_measure(&p->objectives, &p->workspace, &p->point, r->objective, &r->merit) != HF_OK)
-        return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the objectives");
+        return (int)hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the objectives");
     return HF_OK;
-}
-
-int hf_flat_form(hf_flat *f)
-{
-    return (int)find_form(f);
 }
 
 /* Checks that all values are finite and those of cables above zero. Returns HF_OK, or HF_BAD_CASE with a message. */

@@ -310,12 +310,12 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
     const hf_problem *p = j->problem;
     const hf_tolerance_settings *t = &p->settings.tolerance;
     hf_material material;
-    hf_arena arena = {0};
-    double *by_heat = NULL;
+    double *by_heat;
+    void *block = NULL;
     size_t n_move = 3 * (size_t)t->n_truss * (size_t)p->model.n_attachment;
     hf_status status = make_material(p, &material, messages);
     if (status == HF_OK) {
-        status = HF_ARENA_MAKE(&arena, by_heat = hf_arena_take(&arena, n_move, sizeof *by_heat));
+        status = HF_ARENA_ARRAYS(&block, HF_ARRAY(by_heat, n_move));
         if (status == HF_OK) status = hf_load_case_stage_rest_by_heat(p, by_heat);
         hf_built_heat heat = {t->sigma_temperature_K > 0 ? material.expansion_per_K : NULL,
                               t->n_truss ? by_heat : NULL};
@@ -329,7 +329,7 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
                      "not unique");
     }
     hf_material_free(&material);
-    hf_arena_free(&arena);
+    hf_arena_free_block(block);
     return status;
 }
 
