@@ -267,10 +267,11 @@ static int copy_bytes(const unsigned char *from, int n, int *to)
     return n;
 }
 
-static int copy_ints(const int *from, int n, int *to)
+/* Copies n items of `size` bytes. Returns n, or 0 if there are none. */
+static int copy(const void *from, int n, size_t size, void *to)
 {
     if (!from) return 0;
-    if (to && n) memcpy(to, from, (size_t)n * sizeof *to);
+    if (to && n) memcpy(to, from, (size_t)n * size);
     return n;
 }
 
@@ -279,31 +280,24 @@ int hf_flat_ints(const hf_flat *f, const char *name, int *to)
     const hf_scene *s = &f->problem.scene;
     const hf_model *m = &f->problem.model;
     if (!f->is_open) return 0;
-    if (!strcmp(name, "end")) return copy_ints(s->end, 2 * s->n_cable, to);
+    if (!strcmp(name, "end")) return copy(s->end, 2 * s->n_cable, sizeof *to, to);
     if (!strcmp(name, "role")) return copy_bytes(s->role, s->n_node, to);
     if (!strcmp(name, "group")) return copy_bytes(s->group, s->n_cable, to);
     if (!strcmp(name, "law")) return copy_bytes(s->law, s->n_cable, to);
-    if (!strcmp(name, "variable_cable")) return copy_ints(m->variable_cable, m->n_variable, to);
-    if (!strcmp(name, "variable_leader")) return copy_ints(m->variable_leader, m->n_variable, to);
-    if (!strcmp(name, "set_start")) return copy_ints(s->set_start, s->n_set + 1, to);
-    if (!strcmp(name, "set_cable")) return copy_ints(s->set_cable, s->n_set ? s->set_start[s->n_set] : 0, to);
+    if (!strcmp(name, "variable_cable")) return copy(m->variable_cable, m->n_variable, sizeof *to, to);
+    if (!strcmp(name, "variable_leader")) return copy(m->variable_leader, m->n_variable, sizeof *to, to);
+    if (!strcmp(name, "set_start")) return copy(s->set_start, s->n_set + 1, sizeof *to, to);
+    if (!strcmp(name, "set_cable")) return copy(s->set_cable, s->n_set ? s->set_start[s->n_set] : 0, sizeof *to, to);
     return -1;
-}
-
-static int copy_reals(const double *from, int n, double *to)
-{
-    if (!from) return 0;
-    if (to && n) memcpy(to, from, (size_t)n * sizeof *to);
-    return n;
 }
 
 enum { SHAPE_LENGTH, SHAPE_TENSION, SHAPE_Q };
 
-/* Returns one of the arrays [n_cable] of the shape. They follow the positions [n_node][3]. */
+/* Returns one of the arrays [n_cable] of the shape, which follow the positions [n_node][3]; NULL without a shape. */
 static double *shape_part(const hf_flat *f, int part)
 {
     const hf_scene *s = &f->problem.scene;
-    return f->shape + 3 * (size_t)s->n_node + (size_t)part * (size_t)s->n_cable;
+    return !f->shape ? NULL : f->shape + 3 * (size_t)s->n_node + (size_t)part * (size_t)s->n_cable;
 }
 
 /* Copies the shape from the workspace, because later calls overwrite that. */
@@ -314,9 +308,9 @@ static hf_status keep_shape(hf_flat *f, const hf_workspace *w)
     if (!f->shape) f->shape = malloc(3 * ((size_t)s->n_node + (size_t)s->n_cable) * sizeof *f->shape);
     if (!f->shape) return hf_error(&f->messages, HF_NO_MEMORY, "out of memory for the shape of %d nodes", s->n_node);
     hf_model_positions(m, w->position_m, f->shape);
-    copy_reals(w->length_m, s->n_cable, shape_part(f, SHAPE_LENGTH));
-    copy_reals(w->tension_N, s->n_cable, shape_part(f, SHAPE_TENSION));
-    copy_reals(w->q_N_per_m, s->n_cable, shape_part(f, SHAPE_Q));
+    memcpy(shape_part(f, SHAPE_LENGTH), w->length_m, (size_t)s->n_cable * sizeof(double));
+    memcpy(shape_part(f, SHAPE_TENSION), w->tension_N, (size_t)s->n_cable * sizeof(double));
+    memcpy(shape_part(f, SHAPE_Q), w->q_N_per_m, (size_t)s->n_cable * sizeof(double));
     return HF_OK;
 }
 
@@ -357,21 +351,20 @@ static int copy_bounds(const hf_flat *f, bool is_upper, double *to)
 int hf_flat_reals(const hf_flat *f, const char *name, double *to)
 {
     const hf_scene *s = &f->problem.scene;
-    bool has_shape = f->shape != NULL;
     if (!f->is_open) return 0;
-    if (!strcmp(name, "target_position_m")) return copy_reals(s->position_m, 3 * s->n_node, to);
-    if (!strcmp(name, "load_N")) return copy_reals(s->load_N, 3 * s->n_node, to);
-    if (!strcmp(name, "target")) return copy_reals(s->target, s->n_cable, to);
-    if (!strcmp(name, "EA_N")) return copy_reals(s->EA_N, s->n_cable, to);
+    if (!strcmp(name, "target_position_m")) return copy(s->position_m, 3 * s->n_node, sizeof *to, to);
+    if (!strcmp(name, "load_N")) return copy(s->load_N, 3 * s->n_node, sizeof *to, to);
+    if (!strcmp(name, "target")) return copy(s->target, s->n_cable, sizeof *to, to);
+    if (!strcmp(name, "EA_N")) return copy(s->EA_N, s->n_cable, sizeof *to, to);
     if (!strcmp(name, "initial"))
-        return f->is_ready ? copy_reals(f->problem.initial, f->problem.model.n_variable, to) : 0;
+        return f->is_ready ? copy(f->problem.initial, f->problem.model.n_variable, sizeof *to, to) : 0;
     if (!strcmp(name, "lower")) return f->is_ready ? copy_bounds(f, false, to) : 0;
     if (!strcmp(name, "upper")) return f->is_ready ? copy_bounds(f, true, to) : 0;
-    if (!strcmp(name, "position_m")) return copy_reals(f->shape, 3 * s->n_node, to);
-    if (!strcmp(name, "length_m")) return has_shape ? copy_reals(shape_part(f, SHAPE_LENGTH), s->n_cable, to) : 0;
-    if (!strcmp(name, "tension_N")) return has_shape ? copy_reals(shape_part(f, SHAPE_TENSION), s->n_cable, to) : 0;
-    if (!strcmp(name, "q_N_per_m")) return has_shape ? copy_reals(shape_part(f, SHAPE_Q), s->n_cable, to) : 0;
-    if (!strcmp(name, "result")) return has_shape ? copy_result(f, to) : 0;
+    if (!strcmp(name, "position_m")) return copy(f->shape, 3 * s->n_node, sizeof *to, to);
+    if (!strcmp(name, "length_m")) return copy(shape_part(f, SHAPE_LENGTH), s->n_cable, sizeof *to, to);
+    if (!strcmp(name, "tension_N")) return copy(shape_part(f, SHAPE_TENSION), s->n_cable, sizeof *to, to);
+    if (!strcmp(name, "q_N_per_m")) return copy(shape_part(f, SHAPE_Q), s->n_cable, sizeof *to, to);
+    if (!strcmp(name, "result")) return f->shape ? copy_result(f, to) : 0;
     return -1;
 }
 

@@ -106,10 +106,9 @@ static hf_status keep_shape(const hf_problem *p, hf_load_case_stage *c, hf_store
 
 hf_status hf_load_case_stage_rest(const hf_problem *p, double *move_m)
 {
-    size_t n_force = HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node;
     void *block;
     double *force;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(force, n_force)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(force, HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node)));
     hf_status status = HF_OK;
     for (int k = 0; k < p->load_cases.n && status == HF_OK; k++) {
         const hf_frame_load own = load_of_truss(&p->carrier, &p->load_cases.load_case[k], force);

@@ -107,22 +107,19 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
     char reason[HF_LEDGER_REASON_MAX + 1] = "";
     hf_messages trouble = {0};
     const hf_sweep_request *r = w->request;
+    if (status != HF_OK) first_error(said, status, reason);
     if (is_of_machine(status)) {
-        first_error(said, status, reason);
         stop_sweep(w, status, r->study->id[i], reason);
         return;
     }
-    if (status != HF_OK) first_error(said, status, reason);
     hf_status written = hf_ledger_write(&w->ledger, w->request->study, i, status, reason, summary, &trouble);
     pthread_mutex_lock(&w->lock);
     warn_of_files(w, said);
     w->count.n_done += status == HF_OK;
     w->count.n_failed += status != HF_OK;
-    if (written != HF_OK && w->fatal == HF_OK) {
-        w->fatal = written;
-        const char *words = hf_text_first_error(trouble.text, "cannot write");
-        hf_error(w->messages, written, "%.*s", (int)strcspn(words, "\n"), words);
-    }
+    const char *words = hf_text_first_error(trouble.text, "cannot write");
+    if (written != HF_OK && w->fatal == HF_OK)
+        w->fatal = hf_error(w->messages, written, "%.*s", (int)strcspn(words, "\n"), words);
     w->count.wall_s = hf_clock_s() - w->start_s;
     if (r->observer) r->observer(r->observer_context, &w->count);
     pthread_mutex_unlock(&w->lock);
@@ -168,8 +165,8 @@ static bool claim(sweep *w, int i)
         stop_sweep(w, HF_IO, id, words);
         return false;
     }
-    bool is_ours = lock != HF_LOCK_TAKEN, is_finished = false;
-    if (is_ours) is_finished = hf_ledger_is_finished(&w->ledger, w->request->study, i);
+    bool is_ours = lock != HF_LOCK_TAKEN;
+    bool is_finished = is_ours && hf_ledger_is_finished(&w->ledger, w->request->study, i);
     if (is_finished) hf_ledger_release(&w->ledger, id); /* another sweep has finished it in the meantime */
     pthread_mutex_lock(&w->lock);
     w->count.n_elsewhere += !is_ours || is_finished;
