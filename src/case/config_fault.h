@@ -27,8 +27,8 @@ void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *
 /* Reports a fault of a key in a row, such as key "set" of row 0 of the list "optimize.objective". */
 void hf_config_fault_in_row(hf_config_faults *faults, const char *list, int row, const char *key, const char *what);
 
-/* Writes the location of a key to `place`, for the beginning of a message (hf_config_location). `key_format` is a format
- * of the key, such as "cables.%d.set". Returns `place`. */
+/* Writes the location of a key to `place`, for the beginning of a message (hf_config_location). `key_format` is a
+ * format of the key, such as "cables.%d.set". Returns `place`. */
 const char *hf_config_place(const hf_case *settings, char place[HF_LOCATION_SIZE], const char *key_format, ...)
     HF_PRINTF(3, 4);
 
