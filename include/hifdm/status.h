@@ -111,10 +111,10 @@ typedef struct {
 #define HF_PRINTF(format_index, first)
 #endif
 
-/* Appends the line "error: ..." and returns `code`. A caller can therefore write `return hf_error(...)`. The argument
- * `format` is a printf format. */
+/* Appends the line "error: ..." and returns `code`. A caller can therefore write `return hf_error(...)`. If `messages`
+ * is NULL, no line is kept. The argument `format` is a printf format. */
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
-/* Appends the line "warning: ...". The argument `format` is a printf format. */
+/* Appends the line "warning: ...", unless `messages` is NULL. The argument `format` is a printf format. */
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
 /* Writes the location of a key to `text`, for the beginning of a message. An example of a location is "case.yaml:7:3:
  * optimize.objective.0.set". If the location is unknown, the text is the key alone. The argument `key_format` is a

@@ -94,6 +94,7 @@ static void append(hf_messages *m, const char *prefix, const char *format, va_li
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...)
 {
     va_list args;
+    if (!messages) return code;
     va_start(args, format);
     append(messages, "error: ", format, args);
     va_end(args);
@@ -104,6 +105,7 @@ hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ..
 void hf_warning(hf_messages *messages, const char *format, ...)
 {
     va_list args;
+    if (!messages) return;
     va_start(args, format);
     append(messages, "warning: ", format, args);
     va_end(args);
@@ -117,7 +119,7 @@ const char *hf_messages_location(const hf_messages *messages, char text[HF_LOCAT
     va_start(args, key_format);
     vsnprintf(key, sizeof key, key_format, args);
     va_end(args);
-    if (messages->find_location)
+    if (messages && messages->find_location)
         messages->find_location(messages->location_context, key, text, HF_LOCATION_SIZE);
     else
         snprintf(text, HF_LOCATION_SIZE, "%s", key);

@@ -70,7 +70,7 @@ bool hf_config_rename(hf_config_faults *f, size_t line, size_t column, const cha
     snprintf(what, sizeof what, "%s%s%s: %s is now %s: rename it, because version 0.4 refuses the old name",
              f->is_override ? "--set " : "", f->origin, where, old, now);
     /* A study is read before its first point, which has the same text. */
-    if (!f->messages->text || !strstr(f->messages->text, what)) hf_warning(f->messages, "%s", what);
+    if (!f->messages || !f->messages->text || !strstr(f->messages->text, what)) hf_warning(f->messages, "%s", what);
     return true;
 }
 

@@ -314,14 +314,12 @@ static void write_all(merger *m, const char *folder)
 /* Returns true if the file is a merge, which a later merge may replace. */
 static bool is_replaceable(const char *path)
 {
-    hf_messages unwanted = {0};
-    hf_hdf5 io = {.path = path, .messages = &unwanted, .status = HF_OK, .file = -1};
+    hf_hdf5 io = {.path = path, .status = HF_OK, .file = -1};
     hf_hdf5_lock();
     hf_hdf5_open_file(&io, path);
     bool is = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/points") && hf_hdf5_has(&io, io.file, "/runs");
     hf_hdf5_close_file(&io);
     hf_hdf5_unlock(HF_OK);
-    hf_messages_free(&unwanted);
     return is;
 }
 
@@ -356,7 +354,6 @@ static hf_status check_output(const char *path, hf_messages *messages)
 static int is_of_sweep(const hf_study *s, const char *folder, const char *path)
 {
     char file[HF_PATH_SIZE + 32], here[PATH_MAX], how[128];
-    hf_messages unwanted = {0};
     struct stat info;
     int is = hf_path_look(path, &info);
     if (is <= 0) return is;
@@ -365,8 +362,7 @@ static int is_of_sweep(const hf_study *s, const char *folder, const char *path)
         if ((is = hf_path_compare(file, path)) != 0) return is;
     }
     if (!hf_path_folder(path, here, sizeof here) || (is = hf_path_compare(here, folder)) <= 0) return is;
-    hf_status tried = hf_hdf5_try(look_at_output, NULL, path, how, sizeof how, &unwanted);
-    hf_messages_free(&unwanted);
+    hf_status tried = hf_hdf5_try(look_at_output, NULL, path, how, sizeof how, NULL);
     /* A file that is damaged or cannot be read is reported later, or may be replaced. */
     return tried == HF_OK && !is_replaceable(path);
 }

@@ -250,13 +250,11 @@ bool hf_renamed(const char *path, const char *attribute, int k, char object[HF_H
 
 void hf_renamed_note(hf_hdf5 *io)
 {
-    hf_messages unwanted = {0};
-    hf_hdf5 probe = {.path = io->path, .messages = &unwanted, .status = io->status, .file = io->file};
+    hf_hdf5 probe = {.path = io->path, .status = io->status, .file = io->file};
     int version = 0;
     if (hf_hdf5_has_attribute(&probe, probe.file, "/", "format_version"))
         hf_hdf5_get(&probe, probe.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
     bool is_unread = io->status == HF_OK && probe.status != HF_OK && !probe.is_damaged;
-    hf_messages_free(&unwanted);
     if (is_unread) io->status = hf_error(io->messages, probe.status, "%s: cannot read its format_version", io->path);
     if (version == HF_FORMAT_0_2) io->alias = hf_renamed;
 }

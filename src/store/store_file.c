@@ -265,8 +265,7 @@ void hf_store_file_publish(hf_store_file *f, bool durable, bool is_finished)
  * such files. */
 void hf_store_file_end(hf_store_file *f, hf_messages *messages)
 {
-    hf_messages unwanted = {0};
-    f->io.messages = &unwanted;
+    f->io.messages = NULL;
     hf_store_file_close(f);
     if (f->earlier == HF_EARLIER_KEPT && messages)
         hf_warning(messages, "%s: the earlier result is %s" EARLIER " until this one is finished", f->out.path,
@@ -274,7 +273,6 @@ void hf_store_file_end(hf_store_file *f, hf_messages *messages)
     hf_file_out_drop(&f->out, messages); /* before the lock is released */
     bool is_needless = f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new;
     hf_journal_close(&f->journal, is_needless && !f->out.is_left);
-    hf_messages_free(&unwanted);
     if (f->visible >= 0) close(f->visible);
     *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .out.file = -1};
 }

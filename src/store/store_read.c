@@ -18,10 +18,8 @@
 static bool is_ours(const hf_hdf5 *io, bool *could_read)
 {
     char program[16] = "";
-    hf_messages unwanted = {0};
-    hf_hdf5 probe = {.path = io->path, .messages = &unwanted, .status = HF_OK, .file = io->file};
+    hf_hdf5 probe = {.path = io->path, .status = HF_OK, .file = io->file};
     hf_hdf5_get(&probe, probe.file, "/", "program", HF_KIND_CHARS, program, sizeof program);
-    hf_messages_free(&unwanted);
     *could_read = probe.status == HF_OK || probe.is_damaged;
     return !strcmp(program, HF_PROGRAM);
 }
@@ -223,7 +221,7 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
     bool with_load = hf_hdf5_has(&io, group, "node/load_N"), with_EA = hf_hdf5_has(&io, group, "cable/EA_N");
     if (io.status == HF_OK && hf_scene_allocate(scene, n_node, n_cable, with_load, with_EA, false) != HF_OK)
         hf_hdf5_no_memory(&io);
-    hf_layout_pass_columns(&io, false, group, &hf_layout_scene, n_node, n_cable, scene);
+    hf_layout_pass_columns(&io, false, group, hf_layout_scene, n_node, n_cable, scene);
     if (io.status == HF_OK)
         hf_hdf5_read_ids(&io, group, "node/id", n_node, scene->node_id, "cable/id", n_cable, scene->cable_id,
                          &scene->text);
@@ -248,7 +246,7 @@ static void read_shape(hf_hdf5 *io, const char *path, hf_shape *shape)
                         HF_ARRAY(shape->length_m, (size_t)n_cable), HF_ARRAY(shape->tension_N, (size_t)n_cable),
                         HF_ARRAY(shape->q_N_per_m, (size_t)n_cable), HF_ARRAY(shape->law, (size_t)n_cable)) != HF_OK)
         hf_hdf5_no_memory(io);
-    hf_layout_pass_columns(io, false, group, &hf_layout_shape, n_node, n_cable, shape);
+    hf_layout_pass_columns(io, false, group, hf_layout_shape, n_node, n_cable, shape);
     hf_hdf5_close(io, group);
 }
 
@@ -367,7 +365,6 @@ static const char **split_lines(char *text, int *n)
 bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings)
 {
     const char **set = NULL;
-    hf_messages unwanted = {0};
     uint64_t seed = 0;
     size_t size;
     int n_set = 0;
@@ -376,9 +373,8 @@ bool hf_store_parse_case(hf_hdf5 *io, const char *path, hf_case *settings)
     char *text = hf_hdf5_read_strings(io, io->file, "/case/text", -1, &size);
     char *overrides = hf_hdf5_read_strings(io, io->file, "/case/overrides", -1, &size);
     if (io->status == HF_OK && !(set = split_lines(overrides, &n_set))) hf_hdf5_no_memory(io);
-    if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, settings, &unwanted) == HF_OK;
+    if (io->status == HF_OK) is_known = hf_config_parse(path, text, set, n_set, settings, NULL) == HF_OK;
     settings->optimize.seed = seed; /* --seed may have set it */
-    hf_messages_free(&unwanted);
     free(set);
     free(text);
     free(overrides);
@@ -394,16 +390,14 @@ void hf_store_read_case(hf_hdf5 *io, hf_case *settings)
 int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size)
 {
     hf_case *then = calloc(1, sizeof *then);
-    hf_messages unwanted = {0};
     *text = '\0';
     if (!then) return 0;
-    hf_hdf5 io = hf_store_open_result(path, &unwanted);
+    hf_hdf5 io = hf_store_open_result(path, NULL);
     bool is_known = io.status == HF_OK && hf_store_parse_case(&io, settings->path, then);
     is_known = hf_store_close_result(&io) == HF_OK && is_known;
     int n = is_known ? hf_config_differences(then, settings, text, size) : 0;
     hf_case_free(then);
     free(then);
-    hf_messages_free(&unwanted);
     return n;
 }
 
