@@ -166,7 +166,7 @@ static bool claim(sweep *w, int i)
         return false;
     }
     bool is_ours = lock != HF_LOCK_TAKEN;
-    bool is_finished = is_ours && hf_ledger_is_finished(&w->ledger, w->request->study, i);
+    bool is_finished = is_ours && hf_ledger_is_finished(&w->ledger, i);
     if (is_finished) hf_ledger_release(&w->ledger, id); /* another sweep has finished it in the meantime */
     pthread_mutex_lock(&w->lock);
     w->count.n_elsewhere += !is_ours || is_finished;

@@ -117,45 +117,19 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
                     result, j->path);
 }
 
-/* Reads the header of the journal of `result`. Returns true if there is a journal with a header; *has_records: it has
- * records, too. The journal itself must not be a link. */
-static bool read_head(const char *result, char header[HEADER_BYTES], bool *has_records)
+bool hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1], bool *has_records)
 {
-    char path[HF_FILE_OUT_SIZE + 16];
+    char path[HF_FILE_OUT_SIZE + 16], header[HEADER_BYTES + 1] = "";
     struct stat info;
-    hf_messages unwanted = {0};
-    hf_status status = hf_file_out_target(result, path, &unwanted);
-    hf_messages_free(&unwanted);
-    if (status != HF_OK && !realpath(result, path)) return false; /* reading through links of other users is safe */
+    /* Reading through links of other users is safe. */
+    if (hf_file_out_target(result, path, NULL) != HF_OK && !realpath(result, path)) return false;
     strcat(path, ".journal");
     int file = hf_file_io_open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
     ssize_t n = file >= 0 ? hf_file_io_read(file, header, HEADER_BYTES) : -1;
     *has_records = n == HEADER_BYTES && fstat(file, &info) == 0 && info.st_size > HEADER_BYTES;
     if (file >= 0) close(file);
+    strcpy(identity, header + 8);
     return n >= 8 && !memcmp(header, MAGIC, 8);
-}
-
-bool hf_journal_is_there(const char *result)
-{
-    char header[HEADER_BYTES];
-    bool has_records;
-    return read_head(result, header, &has_records);
-}
-
-void hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1])
-{
-    char header[HEADER_BYTES];
-    bool has_records;
-    *identity = '\0';
-    if (read_head(result, header, &has_records) && has_records)
-        snprintf(identity, HF_JOURNAL_IDENTITY + 1, "%.*s", HF_JOURNAL_IDENTITY, header + 8);
-}
-
-bool hf_journal_is_of(const char *result, const char *identity)
-{
-    char header[HEADER_BYTES] = "";
-    bool has_records;
-    return read_head(result, header, &has_records) && *identity && !strncmp(header + 8, identity, HF_JOURNAL_IDENTITY);
 }
 
 /* Writes a header and goes to its end. Returns 0, or -1 and errno. */

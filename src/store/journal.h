@@ -41,14 +41,9 @@ typedef struct {
  * HF_NO_MEMORY. On a file system without locks it only warns. The caller calls hf_journal_close in any case. */
 hf_status hf_journal_open(const char *result, bool replaces, hf_journal *journal, hf_messages *messages);
 
-/* Returns true if `result`, or the file that it leads to, has a journal with a header. Takes no lock. */
-bool hf_journal_is_there(const char *result);
-
-/* Sets `identity` to that of the journal of `result` if the journal has records, else to "". Takes no lock. */
-void hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1]);
-
-/* Returns true if `result` has a journal of the run with this identity, with or without records. Takes no lock. */
-bool hf_journal_is_of(const char *result, const char *identity);
+/* Returns true if `result`, or the file that it leads to, has a journal with a header. Sets the identity in the header,
+ * and *has_records to whether the journal has records, too. The journal itself must not be a link. Takes no lock. */
+bool hf_journal_peek(const char *result, char identity[HF_JOURNAL_IDENTITY + 1], bool *has_records);
 
 /* Empties the journal and gives it the identity of a run. Returns HF_OK or HF_IO. */
 hf_status hf_journal_restart(hf_journal *journal, const char *identity, hf_messages *messages);

@@ -52,6 +52,7 @@ static off_t byte_of(const char *id)
 
 /* How far each file has been read, and which points were finished after that. */
 struct hf_ledger_news {
+    const hf_study *study;
     struct {
         char name[256];
         off_t at;
@@ -309,8 +310,9 @@ static hf_status tell_in_the_way(const char *path, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: is a folder or another special file; remove it", path);
 }
 
-/* Reads what the file holds now as a text, which the caller frees. Rows that are added meanwhile are left out. */
-static hf_status read_text(const char *path, char **text, hf_messages *messages)
+/* Reads what the file holds now, from byte `at` on, as a text, which the caller frees. Rows that are added meanwhile are
+ * left out. */
+static hf_status read_text(const char *path, off_t at, char **text, hf_messages *messages)
 {
     off_t size;
     *text = NULL;
@@ -318,8 +320,9 @@ static hf_status read_text(const char *path, char **text, hf_messages *messages)
     if (file < 0 && errno == EEXIST) return tell_in_the_way(path, messages);
     if (file < 0)
         return hf_error(messages, hf_file_io_fault(errno, HF_IO), "%s: cannot open: %s", path, strerror(errno));
-    if (size <= ROWS_MAX) *text = malloc((size_t)size + 1);
-    ssize_t n = *text ? hf_file_io_read(file, *text, (size_t)size) : 0;
+    size_t length = size > at ? (size_t)(size - at) : 0;
+    if (size <= ROWS_MAX) *text = malloc(length + 1);
+    ssize_t n = *text ? hf_file_io_read_at(file, *text, length, at) : 0;
     int why = errno;
     close(file);
     if (size > ROWS_MAX)
@@ -332,11 +335,11 @@ static hf_status read_text(const char *path, char **text, hf_messages *messages)
     return hf_error(messages, hf_file_io_fault(why, HF_IO), "%s: cannot read: %s", path, strerror(why));
 }
 
-static hf_status read_file(reading *r, const char *folder, const char *name, hf_messages *messages)
+static hf_status read_file(void *context, const char *path, hf_messages *messages)
 {
-    char path[HF_PATH_SIZE + 300], *text;
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    HF_TRY(read_text(path, &text, messages));
+    reading *r = context;
+    char *text;
+    HF_TRY(read_text(path, 0, &text, messages));
     return keep_block(r->points, text) && read_rows(r, text)
                ? HF_OK
                : hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
@@ -353,16 +356,20 @@ static int by_name(const struct dirent **a, const struct dirent **b)
     return strcmp((*a)->d_name, (*b)->d_name);
 }
 
-/* Reads the files in sorted order. If a point has several rows, the same one therefore always counts. */
-static hf_status read_files(reading *r, const char *folder, hf_messages *messages)
+/* Calls `take` for each file of rows in sorted order, until it fails. If a point has several rows, the same one
+ * therefore always counts. */
+static hf_status each_file(const char *folder, hf_status (*take)(void *, const char *path, hf_messages *),
+                           void *context, hf_messages *messages)
 {
+    char path[HF_PATH_SIZE + 300];
     struct dirent **entry;
     hf_status status = HF_OK;
     int n = scandir(folder, &entry, is_rows, by_name);
     if (n < 0 && errno == ENOENT) return HF_OK;
     if (n < 0) return hf_error(messages, HF_IO, "%s: cannot read this folder: %s", folder, strerror(errno));
     for (int i = 0; i < n; i++) {
-        if (status == HF_OK) status = read_file(r, folder, entry[i]->d_name, messages);
+        snprintf(path, sizeof path, "%s/%s", folder, entry[i]->d_name);
+        if (status == HF_OK) status = take(context, path, messages);
         free(entry[i]);
     }
     free(entry);
@@ -384,52 +391,24 @@ static int place_of(struct hf_ledger_news *news, const char *name)
     return news->n_file++;
 }
 
-/* Notes the points of the whole lines of a text. Returns the length of these lines in bytes. */
-static off_t note_rows(struct hf_ledger_news *news, const hf_study *study, char *text)
+/* Notes the points of the whole lines that a file has gained since the last call. A file that cannot be read has no
+ * rows. */
+static hf_status note_rows(void *context, const char *path, hf_messages *messages)
 {
-    char *line = text, *end, *field[3];
-    for (; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+    struct hf_ledger_news *news = context;
+    const hf_study *study = news->study;
+    char *text, *line, *end, *field[3];
+    int k = place_of(news, hf_path_name(path));
+    if (k < 0 || read_text(path, news->file[k].at, &text, messages) != HF_OK) return HF_OK;
+    for (line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
         *end = '\0';
         int i =
             split(line, field, 3) == 3 && !strcmp(field[1], study->fingerprint) ? hf_study_find(study, field[0]) : -1;
         if (i >= 0) news->is_finished[i] = true;
     }
-    return line - text;
-}
-
-/* Notes the points of the rows that a file has gained since the last call; with `skip` only its length. A file that
- * cannot be read has no rows. */
-static void read_news_of(hf_ledger *l, const hf_study *study, const char *name, bool skip)
-{
-    char path[HF_PATH_SIZE + 300];
-    off_t length;
-    int k = place_of(l->news, name);
-    snprintf(path, sizeof path, "%s/%s", l->folder, name);
-    int file = k >= 0 ? hf_file_io_open_ordinary(path, &length) : -1;
-    if (file < 0) return;
-    off_t *at = &l->news->file[k].at;
-    if (skip) *at = length;
-    if (!skip && length > *at && length <= ROWS_MAX) {
-        size_t size = (size_t)(length - *at);
-        char *text = malloc(size + 1);
-        ssize_t n = text ? hf_file_io_read_at(file, text, size, *at) : -1;
-        if (n > 0) text[n] = '\0';
-        if (n > 0) *at += note_rows(l->news, study, text);
-        free(text);
-    }
-    close(file);
-}
-
-static void read_news(hf_ledger *l, const hf_study *study, bool skip)
-{
-    struct dirent **entry;
-    int n = scandir(l->folder, &entry, is_rows, by_name);
-    if (n < 0) return;
-    for (int i = 0; i < n; i++) {
-        read_news_of(l, study, entry[i]->d_name, skip);
-        free(entry[i]);
-    }
-    free(entry);
+    news->file[k].at += line - text;
+    free(text);
+    return HF_OK;
 }
 
 hf_status hf_ledger_watch(hf_ledger *l, const hf_study *study, hf_messages *messages)
@@ -438,14 +417,16 @@ hf_status hf_ledger_watch(hf_ledger *l, const hf_study *study, hf_messages *mess
     if (l->news) l->news->is_finished = calloc((size_t)study->n_point, sizeof(bool));
     if (!l->news || !l->news->is_finished)
         return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for %d points", l->folder, study->n_point);
-    read_news(l, study, 1);
+    l->news->study = study;
+    each_file(l->folder, note_rows, l->news, NULL);
+    memset(l->news->is_finished, 0, (size_t)study->n_point * sizeof(bool)); /* before the watch */
     return HF_OK;
 }
 
-bool hf_ledger_is_finished(hf_ledger *l, const hf_study *study, int point)
+bool hf_ledger_is_finished(hf_ledger *l, int point)
 {
     pthread_mutex_lock(&l->lock);
-    read_news(l, study, 0);
+    each_file(l->folder, note_rows, l->news, NULL);
     bool is_finished = l->news->is_finished[point];
     pthread_mutex_unlock(&l->lock);
     return is_finished;
@@ -488,7 +469,8 @@ static hf_status find_running(reading *r, const char *folder, hf_messages *messa
  * file may have been removed, or a second run of the point may be unfinished. */
 static hf_status find_lost(reading *r, const char *folder, hf_messages *messages)
 {
-    char path[HF_PATH_SIZE + 32];
+    char path[HF_PATH_SIZE + 32], identity[HF_JOURNAL_IDENTITY + 1];
+    bool has_records;
     if (!hf_study_has_files(r->study)) return HF_OK;
     for (int i = 0; i < r->study->n_point; i++) {
         hf_point *p = &r->points->point[i];
@@ -496,7 +478,7 @@ static hf_status find_lost(reading *r, const char *folder, hf_messages *messages
         hf_ledger_content content = hf_ledger_file(folder, r->study, i, path);
         if (content == HF_LEDGER_UNSEEN)
             return hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
-        if (content == HF_LEDGER_FILE && !hf_journal_is_there(path)) continue;
+        if (content == HF_LEDGER_FILE && !hf_journal_peek(path, identity, &has_records)) continue;
         *p = r->failure[i];
         r->points->n_lost += p->state == HF_POINT_MISSING;
     }
@@ -515,7 +497,7 @@ hf_status hf_ledger_read(const char *folder, const hf_study *study, hf_points *p
     }
     for (int i = 0; i < study->n_point; i++)
         points->point[i] = r.failure[i] = (hf_point){HF_POINT_MISSING, HF_NOT_EVALUATED, "", NULL};
-    hf_status status = read_files(&r, folder, messages);
+    hf_status status = each_file(folder, read_file, &r, messages);
     if (status == HF_OK) status = find_running(&r, folder, messages);
     if (status == HF_OK) status = find_lost(&r, folder, messages);
     for (int i = 0; i < study->n_point; i++)

@@ -83,13 +83,13 @@ hf_status hf_ledger_close(hf_ledger *ledger, hf_messages *messages);
 hf_lock hf_ledger_claim(hf_ledger *ledger, const char *id);
 void hf_ledger_release(hf_ledger *ledger, const char *id);
 
-/* Begins to watch which points any process finishes. The caller calls it before hf_ledger_read. Returns HF_OK or
- * HF_NO_MEMORY. */
+/* Begins to watch which points any process finishes. The study is borrowed. The caller calls it before hf_ledger_read.
+ * Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_ledger_watch(hf_ledger *ledger, const hf_study *study, hf_messages *messages);
 
 /* Returns true if the point was finished after hf_ledger_watch, successfully or not. The caller has claimed the point
  * before. Any thread may call it. */
-bool hf_ledger_is_finished(hf_ledger *ledger, const hf_study *study, int point);
+bool hf_ledger_is_finished(hf_ledger *ledger, int point);
 
 /* Writes the row of a finished point. Any thread may call it. reason: one line, "" after success, cut off after
  * HF_LEDGER_REASON_MAX bytes. Returns HF_OK, HF_IO or HF_NO_MEMORY. */

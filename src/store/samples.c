@@ -79,8 +79,8 @@ void hf_samples_identify(const char of_case[65], const char of_design[65], char 
 static bool is_of_other_case(const char *name, const char *of_case)
 {
     char identity[HF_JOURNAL_IDENTITY + 1];
-    hf_journal_peek(name, identity);
-    return *identity && strncmp(identity, of_case, OF_CASE) != 0;
+    bool has_records;
+    return hf_journal_peek(name, identity, &has_records) && has_records && strncmp(identity, of_case, OF_CASE) != 0;
 }
 
 hf_status hf_samples_look(const char *result, int task, int tasks, const char of_case[65], hf_messages *messages)
@@ -97,11 +97,11 @@ hf_status hf_samples_look(const char *result, int task, int tasks, const char of
     return HF_OK;
 }
 
-static void remove_journal_of(const char *name)
+static bool remove_journal_of(const char *name)
 {
     char path[HF_SAMPLES_NAME_SIZE + 16];
     snprintf(path, sizeof path, "%s.journal", name);
-    unlink(path);
+    return unlink(path) == 0;
 }
 
 hf_status hf_samples_collect(hf_samples *s, const char *result, int tasks, bool restart)
@@ -109,10 +109,10 @@ hf_status hf_samples_collect(hf_samples *s, const char *result, int tasks, bool 
     char name[HF_SAMPLES_NAME_SIZE], identity[HF_JOURNAL_IDENTITY + 1];
     for (int task = 0; task < tasks; task++) {
         hf_journal journal;
+        bool has_records;
         name_journal(result, task, tasks, name);
-        hf_journal_peek(name, identity);
-        if (restart && *identity && strcmp(identity, s->identity) != 0) remove_journal_of(name);
-        if (!hf_journal_is_there(name)) continue;
+        if (!hf_journal_peek(name, identity, &has_records)) continue;
+        if (restart && has_records && strcmp(identity, s->identity) != 0 && remove_journal_of(name)) continue;
         hf_status status = hf_journal_open(name, false, &journal, s->messages);
         if (status == HF_OK) status = hf_journal_replay(&journal, s->identity, take_chunk, s, s->messages);
         hf_journal_close(&journal, false);

@@ -31,10 +31,10 @@ static void extend(char identity[65], const void *data, size_t bytes)
     hf_sha256(both, sizeof both, identity);
 }
 
-static void extend_columns(char identity[65], const hf_layout_columns *columns, int n_node, int n_cable,
+static void extend_columns(char identity[65], const hf_layout_column *columns, int n_node, int n_cable,
                            const void *owner)
 {
-    for (const hf_layout_column *c = columns->column; c < columns->column + columns->n; c++) {
+    for (const hf_layout_column *c = columns; c->name; c++) {
         const void *values;
         memcpy(&values, (const char *)owner + c->offset, sizeof values);
         size_t n = (size_t)(c->per_cable ? n_cable : n_node) * (size_t)c->columns;
@@ -62,12 +62,10 @@ static hf_status extend_ids(char identity[65], int n, const char *const *id)
 static hf_status extend_tables(char identity[65], const hf_case *c)
 {
     for (int i = 0; i < c->built.n_load_case; i++) {
-        hf_messages unwanted = {0};
         char *text = NULL;
         size_t n = 0;
         if (!*c->built.load_case[i].nodes_path) continue;
-        hf_status status = hf_text_read_file(c->built.load_case[i].nodes_path, HF_BAD_CASE, &text, &n, &unwanted);
-        hf_messages_free(&unwanted);
+        hf_status status = hf_text_read_file(c->built.load_case[i].nodes_path, HF_BAD_CASE, &text, &n, NULL);
         if (status == HF_OK) extend(identity, text, n);
         free(text);
         if (status == HF_NO_MEMORY) return status;
@@ -80,7 +78,7 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
     char words[128];
     int n = snprintf(words, sizeof words, "%s %llu", settings->sha256, (unsigned long long)settings->optimize.seed);
     hf_sha256(words, (size_t)n, identity);
-    extend_columns(identity, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
+    extend_columns(identity, hf_layout_scene, scene->n_node, scene->n_cable, scene);
     HF_TRY(extend_ids(identity, scene->n_node, scene->node_id));
     HF_TRY(extend_ids(identity, scene->n_cable, scene->cable_id));
     if (scene->n_facet > 0) extend(identity, scene->facet, 4 * (size_t)scene->n_facet * sizeof *scene->facet);
@@ -92,7 +90,7 @@ hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, cons
     HF_TRY(extend_tables(identity, settings));
     if (settings->taken.point) extend(identity, settings->taken.sha256, 64);
     if (!truss) return HF_OK;
-    extend_columns(identity, &hf_layout_truss, truss->n_node, truss->n_member, truss);
+    extend_columns(identity, hf_layout_truss, truss->n_node, truss->n_member, truss);
     extend(identity, truss->fixed, (size_t)truss->n_node);
     HF_TRY(extend_ids(identity, truss->n_node, truss->node_id));
     return extend_ids(identity, truss->n_member, truss->member_id);
@@ -135,23 +133,29 @@ static void tell_difference(hf_hdf5 *io, const hf_case *now, char *words, size_t
     free(then);
 }
 
+/* Removes the earlier result beside a finished one whose run has left its journal. */
+static void forget_earlier(const char *path, const char *identity)
+{
+    char of_journal[HF_JOURNAL_IDENTITY + 1];
+    bool has_records;
+    if (hf_journal_peek(path, of_journal, &has_records) && *identity && !strcmp(of_journal, identity))
+        hf_store_file_forget_earlier(path);
+}
+
 /* Removes the journal of a finished result. A run that was killed after its result had got its name leaves a journal,
  * and perhaps the temporary name of the result and the earlier result that it replaced. All of them are removed. */
 static void remove_journal(const char *path, bool keeps_earlier, const char *identity)
 {
     char target[HF_FILE_OUT_SIZE], name[HF_FILE_OUT_SIZE + 16];
     hf_journal journal;
-    hf_messages unwanted = {0};
-    hf_status status = hf_file_out_target(path, target, &unwanted);
+    hf_status status = hf_file_out_target(path, target, NULL);
     snprintf(name, sizeof name, "%s.journal", target);
     if (status == HF_OK && access(name, F_OK) == 0) {
-        status = hf_journal_open(target, 0, &journal, &unwanted);
+        status = hf_journal_open(target, false, &journal, NULL);
         if (status == HF_OK) hf_file_out_clean(target);
-        if (status == HF_OK && keeps_earlier && hf_journal_is_of(target, identity))
-            hf_store_file_forget_earlier(target);
+        if (status == HF_OK && keeps_earlier) forget_earlier(target, identity);
         hf_journal_close(&journal, status == HF_OK);
     }
-    hf_messages_free(&unwanted);
 }
 
 static void ignore_difference(void *context, const char *name, const char *how)
@@ -168,13 +172,11 @@ void hf_store_set_reader(const char *const *command)
 
 void hf_store_read_like_a_run(const char *path)
 {
-    hf_messages unwanted = {0};
     hf_summary *summary = calloc(1, sizeof *summary);
     hf_comparison comparison = {0};
     hf_hdf5_limit();
-    hf_status status = summary ? hf_store_read_summary(path, summary, &unwanted) : HF_NO_MEMORY;
-    if (status == HF_OK && !summary->finished)
-        hf_compare_files(path, path, &comparison, ignore_difference, NULL, &unwanted);
+    hf_status status = summary ? hf_store_read_summary(path, summary, NULL) : HF_NO_MEMORY;
+    if (status == HF_OK && !summary->finished) hf_compare_files(path, path, &comparison, ignore_difference, NULL, NULL);
     if (summary) hf_summary_free(summary);
     free(summary);
 }
@@ -265,7 +267,7 @@ hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_message
     hf_store_close_result(&io);
     if (!is_read && !io.is_damaged && said.text) return pass_on(&said, io.status, messages);
     hf_messages_free(&said);
-    if (is_read && finished && keeps && hf_journal_is_of(path, identity)) hf_store_file_forget_earlier(path);
+    if (is_read && finished && keeps) forget_earlier(path, identity);
     if (is_read) *earlier = finished ? HF_EARLIER_THERE : keeps ? HF_EARLIER_KEPT : HF_EARLIER_NONE;
     return HF_OK;
 }

@@ -85,7 +85,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (status == HF_OK) status = hf_ledger_watch(&ledger, &study, &messages);
     fuzz_write("points-fuzz-1.tsv", text, length);
     for (int i = 0; status == HF_OK && i < study.n_point; i++)
-        hf_ledger_is_finished(&ledger, &study, i);
+        hf_ledger_is_finished(&ledger, i);
     hf_status closed = hf_ledger_close(&ledger, &messages);
     FUZZ_REQUIRE(status == HF_OK && closed == HF_OK);
     status = hf_ledger_read(sweep, &study, &points, &messages);

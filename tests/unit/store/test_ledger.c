@@ -304,15 +304,15 @@ START_TEST(what_others_finish_is_noticed)
     write_point(&s, 0, HF_OK, "", &summary);
     ck_assert_int_eq(hf_ledger_open(folder, &mine, &m), HF_OK);
     ck_assert_int_eq(hf_ledger_watch(&mine, &s, &m), HF_OK);
-    ck_assert(!hf_ledger_is_finished(&mine, &s, 0)); /* before: --retry may ask for it */
-    ck_assert(!hf_ledger_is_finished(&mine, &s, 1));
+    ck_assert(!hf_ledger_is_finished(&mine, 0)); /* before: --retry may ask for it */
+    ck_assert(!hf_ledger_is_finished(&mine, 1));
     write_point(&s, 1, HF_OK, "", &summary);
     write_point(&s, 2, HF_COLLAPSED, "fell", &summary);
     s.fingerprint[0] ^= 1;
     write_point(&s, 3, HF_OK, "", &summary);
     s.fingerprint[0] ^= 1;
     for (int i = 0; i < 5; i++)
-        ck_assert_int_eq(hf_ledger_is_finished(&mine, &s, i), i == 1 || i == 2);
+        ck_assert_int_eq(hf_ledger_is_finished(&mine, i), i == 1 || i == 2);
     hf_ledger_close(&mine, &m);
     hf_study_free(&s);
 }
@@ -532,7 +532,7 @@ START_TEST(what_is_no_table_is_in_the_way)
     snprintf(line, sizeof line, command[_i], path);
     ck_assert_int_eq(system(line), 0);
     write_point(&s, 1, HF_OK, "", &(hf_summary){0});
-    ck_assert(hf_ledger_is_finished(&mine, &s, 1));
+    ck_assert(hf_ledger_is_finished(&mine, 1));
     ck_assert_int_eq(hf_ledger_read(folder, &s, &points, &m), HF_IO);
     ck_assert_ptr_nonnull(strstr(m.text, path));
     ck_assert_ptr_nonnull(strstr(m.text, words[_i]));
