@@ -277,40 +277,23 @@ static uint64_t hash_designs(const hf_population *population)
     return all;
 }
 
-/* Returns a population of the best individual alone. While no individual is feasible, this is the one with the smallest
- * violation of its limits. */
-static hf_population best_alone(const hf_population *p)
+/* Returns the best individual. While none is feasible, this is the one with the smallest violation of its limits. */
+static int best_of(const hf_population *p)
 {
-    hf_population one = *p;
-    size_t best = p->best < 0 ? 0 : (size_t)p->best;
+    int best = p->best < 0 ? 0 : p->best;
     for (int i = 1; p->best < 0 && i < p->n_individual; i++)
-        if (hf_population_is_better(p, i, (int)best)) best = (size_t)i;
-    one.n_individual = 1;
-    one.design += best * (size_t)p->n_variable;
-    one.result += best;
-    one.pending += best;
-    one.crossover_rate += best;
-    one.mutation_rate += best;
-    one.parent += 2 * best;
-    one.trial_status += best;
-    one.trial_psi_m += best;
-    return one;
+        if (hf_population_is_better(p, i, best)) best = i;
+    return best;
 }
 
 /* Adds the rows of individuals that the file keeps of a generation. The whole generation is in g->last already. */
 static void add_part(hf_generations *g, const hf_population *population)
 {
-    generation_row row[HF_GENERATIONS_PIECES];
-    hf_population best = best_alone(population);
     bool is_best = g->every == HF_GENERATIONS_BEST;
+    size_t first = is_best ? (size_t)best_of(population) : 0;
     if (!is_best && (g->n_stored + g->n_waiting) % g->every != 0) return;
-    list_rows(&best, row);
-    for (int i = 0; !is_series(i); i++) {
-        if (is_best)
-            copy_values(&row[i], g->row_bytes[i], true, slot(g, i));
-        else if (g->row_bytes[i])
-            memcpy(slot(g, i), g->last[i], g->row_bytes[i]);
-    }
+    for (int i = 0; !is_series(i); i++)
+        if (g->row_bytes[i]) memcpy(slot(g, i), g->last[i] + first * g->row_bytes[i], g->row_bytes[i]);
     g->n_design++;
 }
 
