@@ -70,7 +70,7 @@ const hf_hdf5_kind *hf_layout_kind_of(const hf_result_field *field)
 
 /* ---- columns ---- */
 
-static const hf_layout_column scene_column[] = {
+const hf_layout_column hf_layout_scene[] = {
     HF_LAYOUT_COLUMN(hf_scene, "node/position_m", position_m, REAL, 0, 3, "m",
                      "target position; of supports also the real one"),
     HF_LAYOUT_COLUMN(hf_scene, "node/load_N", load_N, REAL, 0, 3, "N", "load"),
@@ -81,44 +81,42 @@ static const hf_layout_column scene_column[] = {
     HF_LAYOUT_COLUMN(hf_scene, "cable/target", target, REAL, 1, 1, "N, m or N/m",
                      "tension, length, force density or unstressed length, by law; "
                      "NaN = the pretension of the case"),
-    HF_LAYOUT_COLUMN(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given")};
+    HF_LAYOUT_COLUMN(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given"),
+    {0}};
 
-static const hf_layout_column shape_column[] = {
+const hf_layout_column hf_layout_shape[] = {
     HF_LAYOUT_COLUMN(hf_shape, "position_m", position_m, REAL, 0, 3, "m", "position of each node of /scene/node"),
     HF_LAYOUT_COLUMN(hf_shape, "length_m", length_m, REAL, 1, 1, "m", "length of each cable of /scene/cable"),
     HF_LAYOUT_COLUMN(hf_shape, "tension_N", tension_N, REAL, 1, 1, "N", "tension, force density times length"),
     HF_LAYOUT_COLUMN(hf_shape, "q_N_per_m", q_N_per_m, REAL, 1, 1, "N/m", "force density"),
-    HF_LAYOUT_COLUMN(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule")};
+    HF_LAYOUT_COLUMN(hf_shape, "law", law, LAW, 1, 1, "", "law in force, under the case's method or rule"),
+    {0}};
 
 /* Columns of hf_truss and of hf_carrier_state in /truss. Here per_cable means per member. */
 #define NUMBER(name, units, otherwise, description)                                                                    \
     {"member/" #name, HF_KIND_REAL, 1, 1, units, description, offsetof(hf_truss, name)},
-static const hf_layout_column truss_column[] = {
+const hf_layout_column hf_layout_truss[] = {
     HF_LAYOUT_COLUMN(hf_truss, "node/position_m", position_m, REAL, 0, 3, "m", "position without load"),
     HF_LAYOUT_COLUMN(hf_truss, "node/mass_kg", mass_kg, REAL, 0, 1, "kg", "mass of the hinges"),
     HF_LAYOUT_COLUMN(hf_truss, "member/end", end, INT, 1, 2, "", "the two nodes, as indices from 0 into /truss/node"),
     HF_LAYOUT_COLUMN(hf_truss, "member/joint", joint, JOINT, 1, 1, "",
                      "rigid: clamped to its nodes; pinned: axial force alone"),
     HF_LAYOUT_COLUMN(hf_truss, "member/unit", unit, UNIT, 1, 1, "", "basic unit that the member belongs to"),
-    HF_MEMBER_NUMBERS(NUMBER)};
+    HF_MEMBER_NUMBERS(NUMBER){0}};
 
-static const hf_layout_column state_column[] = {
+const hf_layout_column hf_layout_truss_state[] = {
     HF_LAYOUT_COLUMN(hf_carrier_state, "node/displacement", displacement, REAL, 0, 6, "m, rad",
                      "under the pull of the net: along x, y, z, about x, y, z"),
     HF_LAYOUT_COLUMN(hf_carrier_state, "node/reaction", reaction, REAL, 0, 6, "N, N m", "of the supports on the truss"),
     HF_LAYOUT_COLUMN(hf_carrier_state, "member/end_force", end_force, REAL, 1, 12, "N, N m",
                      "local, of the nodes on the member: Nx (compression), Vy, Vz, Tx, My, Mz at the first end, then "
-                     "at the second")};
+                     "at the second"),
+    {0}};
 
-const hf_layout_columns hf_layout_scene = {HF_LAYOUT_COLUMNS(scene_column)};
-const hf_layout_columns hf_layout_shape = {HF_LAYOUT_COLUMNS(shape_column)};
-const hf_layout_columns hf_layout_truss = {HF_LAYOUT_COLUMNS(truss_column)};
-const hf_layout_columns hf_layout_truss_state = {HF_LAYOUT_COLUMNS(state_column)};
-
-void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_columns *columns, int n_node,
+void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_column *columns, int n_node,
                             int n_cable, const void *owner)
 {
-    for (const hf_layout_column *c = columns->column; c < columns->column + columns->n; c++) {
+    for (const hf_layout_column *c = columns; c->name; c++) {
         const hsize_t n = (hsize_t)(c->per_cable ? n_cable : n_node);
         const hf_hdf5_array array = {c->name,  c->kind,       c->columns > 1 ? 2 : 1, {n, (hsize_t)c->columns},
                                      c->units, c->description};

@@ -37,7 +37,7 @@ const hf_hdf5_kind *hf_layout_kind_of(const hf_result_field *field);
 
 /* ---- Columns: pointers in structs and their data sets ---- */
 
-/* One column: a pointer in a struct and its data set [n_node] or [n_cable]. With columns > 1 the data set is
+/* One column of a list that ends with {0}: a pointer in a struct and its data set [n_node] or [n_cable]. With columns > 1 the data set is
  * [n_node][columns] or [n_cable][columns]. */
 typedef struct {
     const char *name;
@@ -48,25 +48,19 @@ typedef struct {
     size_t offset; /* of the pointer in its struct */
 } hf_layout_column;
 
-typedef struct {
-    const hf_layout_column *column;
-    int n;
-} hf_layout_columns;
-
 #define HF_LAYOUT_COLUMN(type, name, member, kind, per_cable, columns, units, description)                             \
     {                                                                                                                  \
         name, HF_KIND_##kind, per_cable, columns, units, description, offsetof(type, member)                           \
     }
-#define HF_LAYOUT_COLUMNS(table) table, HF_HDF5_COUNT(table)
 
-extern const hf_layout_columns hf_layout_scene;       /* hf_scene in /scene */
-extern const hf_layout_columns hf_layout_shape;       /* hf_shape in /form, /search, /refine and /load_cases/NAME */
-extern const hf_layout_columns hf_layout_truss;       /* hf_truss in /truss */
-extern const hf_layout_columns hf_layout_truss_state; /* hf_carrier_state in /truss and /load_cases/NAME/truss */
+extern const hf_layout_column hf_layout_scene[];       /* hf_scene in /scene */
+extern const hf_layout_column hf_layout_shape[];       /* hf_shape in /form, /search, /refine and /load_cases/NAME */
+extern const hf_layout_column hf_layout_truss[];       /* hf_truss in /truss */
+extern const hf_layout_column hf_layout_truss_state[]; /* hf_carrier_state in /truss and /load_cases/NAME/truss */
 
 /* Writes or reads the data sets of all columns whose pointer in `owner` is not NULL. n_cable: cables, or members of a
  * truss. */
-void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_columns *columns, int n_node,
+void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_column *columns, int n_node,
                             int n_cable, const void *owner);
 
 /* Removes the object `path` if it exists, so that it can be written again. A resumed run needs this if an earlier

@@ -320,20 +320,20 @@ void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *m, const hf_workspace
          offsetof(hf_coupling_history, step_m)},
         {"psi_m", HF_KIND_REAL, 0, 1, "m", "RMS distance of the inner nodes", offsetof(hf_coupling_history, psi_m)},
         {"deflection_max_m", HF_KIND_REAL, 0, 1, "m", "maximum deflection of the truss at an attachment",
-         offsetof(hf_coupling_history, deflection_max_m)}};
+         offsetof(hf_coupling_history, deflection_max_m)},
+        {0}};
     static const hf_layout_column attachment_column[] = {
         {"displacement_m", HF_KIND_REAL, 0, 3, "m", "of each attachment", offsetof(hf_workspace, displacement_m)},
         {"force_N", HF_KIND_REAL, 0, 3, "N", "pull of the net and its loads on each attachment",
-         offsetof(hf_workspace, attachment_force_N)}};
-    static const hf_layout_columns history = {HF_LAYOUT_COLUMNS(history_column)};
-    static const hf_layout_columns attachment = {HF_LAYOUT_COLUMNS(attachment_column)};
+         offsetof(hf_workspace, attachment_force_N)},
+        {0}};
     hid_t group = hf_hdf5_make_group(io, "/coupling");
     write_attachments(io, group, m);
-    hf_layout_pass_columns(io, true, group, &attachment, m->n_attachment, 0, w);
+    hf_layout_pass_columns(io, true, group, attachment_column, m->n_attachment, 0, w);
     hf_hdf5_close(io, group);
     if (!h) return;
     group = hf_hdf5_make_group(io, "/coupling/history");
-    hf_layout_pass_columns(io, true, group, &history, h->n, 0, h);
+    hf_layout_pass_columns(io, true, group, history_column, h->n, 0, h);
     hf_hdf5_close(io, group);
 }
 

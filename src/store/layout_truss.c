@@ -45,17 +45,17 @@ void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carr
         {"attachment/net_node", HF_KIND_INT, 0, 1, "", "support of the net, as index from 0 into /scene/node",
          offsetof(hf_carrier, scene_node)},
         {"attachment/truss_node", HF_KIND_INT, 0, 1, "", "truss node that carries it, as index from 0 into /truss/node",
-         offsetof(hf_carrier, truss_node)}};
-    static const hf_layout_columns attachment = {HF_LAYOUT_COLUMNS(attachment_column)};
+         offsetof(hf_carrier, truss_node)},
+        {0}};
     const hf_truss *t = &carrier->truss;
     hid_t group = hf_layout_make_truss(io, "/truss");
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/attachment"));
     hf_hdf5_write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "member/id", t->member_id, t->n_member, "name of the member");
     pass_fixed(io, true, group, t);
-    hf_layout_pass_columns(io, true, group, &hf_layout_truss, t->n_node, t->n_member, t);
-    hf_layout_pass_columns(io, true, group, &attachment, carrier->n_attachment, 0, carrier);
-    if (state) hf_layout_pass_columns(io, true, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
+    hf_layout_pass_columns(io, true, group, hf_layout_truss, t->n_node, t->n_member, t);
+    hf_layout_pass_columns(io, true, group, attachment_column, carrier->n_attachment, 0, carrier);
+    if (state) hf_layout_pass_columns(io, true, group, hf_layout_truss_state, t->n_node, t->n_member, state);
     hf_hdf5_close(io, group);
 }
 
@@ -69,7 +69,7 @@ void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_
                         HF_ARRAY(state->end_force, 2 * HF_TRUSS_DOF * (size_t)t->n_member)) != HF_OK)
         hf_hdf5_no_memory(io);
     if (io->status == HF_OK)
-        hf_layout_pass_columns(io, false, group, &hf_layout_truss_state, t->n_node, t->n_member, state);
+        hf_layout_pass_columns(io, false, group, hf_layout_truss_state, t->n_node, t->n_member, state);
 }
 
 void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
@@ -78,7 +78,7 @@ void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
     int n_node = hf_hdf5_length(io, group, "node/mass_kg", HF_LAYOUT_COUNT_MAX);
     int n_member = hf_hdf5_length(io, group, "member/joint", HF_LAYOUT_COUNT_MAX);
     if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, false) != HF_OK) hf_hdf5_no_memory(io);
-    hf_layout_pass_columns(io, false, group, &hf_layout_truss, n_node, n_member, t);
+    hf_layout_pass_columns(io, false, group, hf_layout_truss, n_node, n_member, t);
     if (io->status == HF_OK)
         hf_hdf5_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
     if (io->status == HF_OK) pass_fixed(io, false, group, t);

@@ -133,7 +133,7 @@ static void write_scene(hf_hdf5 *io, const hf_scene *scene)
     HF_HDF5_CLOSE(io, hf_hdf5_make_group(io, "/scene/node"), hf_hdf5_make_group(io, "/scene/cable"));
     hf_hdf5_write_ids(io, group, "node/id", scene->node_id, scene->n_node, "name of the node");
     hf_hdf5_write_ids(io, group, "cable/id", scene->cable_id, scene->n_cable, "name of the cable");
-    hf_layout_pass_columns(io, true, group, &hf_layout_scene, scene->n_node, scene->n_cable, scene);
+    hf_layout_pass_columns(io, true, group, hf_layout_scene, scene->n_node, scene->n_cable, scene);
     double *length_m = hf_hdf5_take(io, (size_t)scene->n_cable, sizeof *length_m);
     for (int e = 0; length_m && e < scene->n_cable; e++)
         length_m[e] = hf_scene_length_at_target(scene, e);
@@ -201,7 +201,7 @@ static void write_shape(hf_hdf5 *io, hid_t group, const hf_model *m, const hf_wo
                       .law = w->law};
     if (!shape.position_m) return;
     hf_model_positions(m, w->position_m, shape.position_m);
-    hf_layout_pass_columns(io, true, group, &hf_layout_shape, m->n_node, m->n_cable, &shape);
+    hf_layout_pass_columns(io, true, group, hf_layout_shape, m->n_node, m->n_cable, &shape);
     free(shape.position_m);
 }
 
@@ -244,9 +244,9 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
         HISTORY(residual_N, "N", "maximum nodal force out of balance"),
         HISTORY(inner_tension_ratio, "", "maximum over minimum tension of the inner cables"),
         HISTORY(boundary_tension_ratio, "", "maximum over minimum tension of the boundary cables"),
-        HISTORY(length_error, "", "maximum |l/L*-1| over taut cables of law length")};
+        HISTORY(length_error, "", "maximum |l/L*-1| over taut cables of law length"),
+        {0}};
 #undef HISTORY
-    static const hf_layout_columns columns = {HF_LAYOUT_COLUMNS(history_column)};
     hf_hdf5 *io = hf_store_enter(s, messages);
     if (s->is_resumed) {
         compare_shape(s, m, w);
@@ -257,7 +257,7 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
     hf_hdf5_close(io, group);
     if (history) {
         group = hf_hdf5_make_group(io, "/form/history");
-        hf_layout_pass_columns(io, true, group, &columns, history->n, 0, history);
+        hf_layout_pass_columns(io, true, group, history_column, history->n, 0, history);
         hf_hdf5_close(io, group);
     }
     if (m->n_attachment) hf_layout_write_coupling(io, m, w, history ? &history->coupling : NULL);
@@ -277,8 +277,8 @@ hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const h
     if (!s) return HF_OK;
     hf_hdf5 *io = hf_store_enter(s, messages);
     hid_t group = hf_hdf5_make_group(io, hf_stage_group[stage]);
-    for (int i = 0; i < hf_layout_shape.n; i++) /* an interrupted session may have left a shape */
-        renew(io, group, hf_layout_shape.column[i].name);
+    for (const hf_layout_column *c = hf_layout_shape; c->name; c++) /* an interrupted session may have left a shape */
+        renew(io, group, c->name);
     renew(io, group, "design");
     write_shape(io, group, m, w);
     hf_layout_write_variables(io, group, "design", m->variable, m->n_variable, design);
@@ -301,7 +301,7 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
     if (truss) {
         strncat(path, "/truss", sizeof path - strlen(path) - 1);
         group = hf_layout_make_truss(io, path);
-        hf_layout_pass_columns(io, true, group, &hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
+        hf_layout_pass_columns(io, true, group, hf_layout_truss_state, carrier->truss.n_node, carrier->truss.n_member,
                                truss);
         hf_hdf5_close(io, group);
     }
