@@ -219,12 +219,8 @@ static bool compare_data_set(comparing *q, const char *name)
 static bool has_data_set(hf_hdf5 *io, const char *path)
 {
     char name[HF_HDF5_NAME_SIZE];
-    if (!hf_hdf5_has(io, io->file, path)) return false;
-    hid_t object = H5Oopen(io->file, hf_hdf5_name(io, io->file, path, name), H5P_DEFAULT);
-    bool is = object >= 0 && H5Iget_type(object) == H5I_DATASET;
-    if (object < 0) hf_hdf5_fail(io, "read", io->file, path);
-    hf_hdf5_close(io, object);
-    return is;
+    return hf_hdf5_has(io, io->file, path) &&
+           hf_hdf5_is(io, io->file, hf_hdf5_name(io, io->file, path, name), H5I_DATASET);
 }
 
 static void tell_absent(comparing *q, const char *path, const hf_hdf5 *io)

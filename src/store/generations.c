@@ -93,9 +93,6 @@ static void list_rows(const hf_population *now, generation_row row[HF_GENERATION
     ROW(HF_ROW_VIOLATION + 2, "worst_psi_m", REAL, 1, "m", "of the feasible individuals", SINGLE(now->worst_psi_m));
     ROW(HF_ROW_VIOLATION + 3, "n_infeasible", INT, 1, "", "individuals whose status is not ok",
         SINGLE(now->n_infeasible));
-#undef ROW
-#undef ARRAY
-#undef SINGLE
     const hf_result_field *field[HF_RESULT_N_INDIVIDUAL];
     hf_result_list_individual(field);
     for (int i = 0; i < HF_RESULT_N_INDIVIDUAL; i++) {
@@ -206,25 +203,19 @@ static void measure_rows(const hf_generations *g, int n_individual, size_t bytes
     }
 }
 
-hf_status hf_generations_create(int n_individual, int n_variable, int n_objective, int limit, int every,
-                                hf_generations *g)
+hf_status hf_generations_create(hf_generations *g)
 {
     hf_arena arena = {0};
-    *g = (hf_generations){.n_individual = n_individual,
-                          .n_variable = n_variable,
-                          .n_objective = n_objective,
-                          .limit = limit,
-                          .every = every,
-                          .base_psi_m = (double)NAN};
     size_t waiting = sizeof g->design_hash;
-    measure_rows(g, n_individual, g->whole_bytes);
+    g->base_psi_m = (double)NAN;
+    measure_rows(g, g->n_individual, g->whole_bytes);
     measure_rows(g, n_in_row(g), g->row_bytes);
     g->payload_bytes = sizeof g->design_hash;
     for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; i++) {
         g->payload_bytes += g->whole_bytes[i];
         waiting += g->row_bytes[i];
     }
-    g->capacity = how_many(WAITING_BYTES / waiting, limit);
+    g->capacity = how_many(WAITING_BYTES / waiting, g->limit);
     g->design_chunk =
         how_many(g->row_bytes[HF_ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[HF_ROW_DESIGN] : 1, g->capacity);
     g->design_capacity = how_many((size_t)(DESIGN_CHUNKS * g->design_chunk), g->capacity);
@@ -406,7 +397,7 @@ static void make_array(hf_hdf5 *io, hid_t group, const generation_row *row, size
 {
     hsize_t chunk[3];
     choose_chunk(&row->array, row_bytes, (hsize_t)rows, chunk);
-    hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row->array, chunk));
+    hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row->array, chunk, false));
 }
 
 static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, generation_row row[HF_GENERATIONS_PIECES])

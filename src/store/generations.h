@@ -30,10 +30,13 @@
 enum { HF_GENERATIONS_COUNTS = 3 };
 
 typedef struct {
-    bool has_rows; /* as in hf_population; the caller sets it after creation */
+    /* The caller sets the members from here to `every`. */
+    bool has_rows; /* as in hf_population */
     int n_individual, n_variable, n_objective;
-    int limit;                                 /* maximum number of generations */
-    int every;                                 /* individuals have rows in generations 0, every, 2 every, ... */
+    int limit; /* maximum number of generations */
+    /* 1: the individuals of each generation have rows; n > 1: those of generations 0, n, 2 n, ...;
+     * HF_GENERATIONS_BEST: the best one of each generation. */
+    int every;
     int n_stored;                              /* generations in the file */
     int n_waiting, capacity;                   /* generations in memory, and their maximum */
     int n_design, design_capacity;             /* rows of designs in memory, and their maximum */
@@ -52,11 +55,9 @@ typedef struct {
     void *block;
 } hf_generations;
 
-/* Creates the waiting rows, which are empty. every: 1: the individuals of each generation have rows; n > 1: those of
- * each n-th generation; HF_GENERATIONS_BEST: the best one of each generation. Returns HF_OK or HF_NO_MEMORY. The caller
- * calls hf_generations_free in any case. */
-hf_status hf_generations_create(int n_individual, int n_variable, int n_objective, int limit, int every,
-                                hf_generations *g);
+/* Creates the waiting rows, which are empty. Returns HF_OK or HF_NO_MEMORY. The caller calls hf_generations_free in any
+ * case. */
+hf_status hf_generations_create(hf_generations *g);
 void hf_generations_free(hf_generations *g);
 
 /* hf_generations_are_full returns true if hf_generations_make_room must be called before the next generation is added.

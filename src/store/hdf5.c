@@ -165,10 +165,10 @@ static hid_t make_enum(const hf_hdf5_kind *kind)
 }
 
 /* Makes a type of strings. length: bytes of each string, or H5T_VARIABLE. */
-static hid_t make_string(size_t length)
+static hid_t make_string(size_t length, H5T_cset_t characters)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
-    return checked(type, type >= 0 && H5Tset_size(type, length) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0 &&
+    return checked(type, type >= 0 && H5Tset_size(type, length) >= 0 && H5Tset_cset(type, characters) >= 0 &&
                              (length == H5T_VARIABLE || H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0));
 }
 
@@ -179,7 +179,7 @@ static hid_t make_type(const hf_hdf5_kind *kind, hsize_t length)
     const hid_t number[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT, H5T_NATIVE_LONG, H5T_NATIVE_UINT64, H5T_NATIVE_UCHAR};
     if (is_enum(kind)) return make_enum(kind);
     if (kind->class <= HF_HDF5_BYTE) return H5Tcopy(number[kind->class]);
-    return make_string(kind->class == HF_HDF5_TEXT ? H5T_VARIABLE : (size_t)length);
+    return make_string(kind->class == HF_HDF5_TEXT ? H5T_VARIABLE : (size_t)length, H5T_CSET_UTF8);
 }
 
 static hid_t array_type(const hf_hdf5_array *a)
@@ -382,7 +382,7 @@ static hid_t make_layout(const hf_hdf5_array *a, const hsize_t *chunk, bool pack
     return checked(properties, ok);
 }
 
-static hid_t make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const hsize_t *chunk, bool packs)
+hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const hsize_t *chunk, bool packs)
 {
     hid_t type = -1, space = -1, properties = -1, data_set = -1;
     if (io->status != HF_OK) return -1;
@@ -396,14 +396,9 @@ static hid_t make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const 
     return data_set;
 }
 
-hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, const hsize_t *chunk)
-{
-    return make_array(io, group, a, chunk, false);
-}
-
 static void write_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, bool packs, const void *values)
 {
-    hid_t data_set = make_array(io, group, a, NULL, packs), type = -1;
+    hid_t data_set = hf_hdf5_make_array(io, group, a, NULL, packs), type = -1;
     if (io->status == HF_OK) {
         type = array_type(a);
         if (type < 0 || H5Dwrite(data_set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
@@ -657,7 +652,12 @@ void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *at
 void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text)
 {
     size_t length = strlen(text) ? strlen(text) : 1; /* HDF5 has no type of 0 bytes; the NUL serves as padding */
-    if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length), 0, text);
+    if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(length, H5T_CSET_UTF8), 0, text);
+}
+
+void hf_hdf5_put_ascii(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text)
+{
+    if (io->status == HF_OK) put_typed(io, place, name, attribute, make_string(strlen(text), H5T_CSET_ASCII), 0, text);
 }
 
 /* Replaces place, name and attribute by those that the file has, written into object[] and known[]. Returns false if

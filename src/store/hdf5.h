@@ -166,6 +166,9 @@ hid_t hf_hdf5_open_group(hf_hdf5 *io, const char *path);
  * must never follow a soft or external link, so a path with such a link counts as damage. */
 bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name);
 
+/* Returns true if the existing object `name` is of this type. Does not look for names of another version. */
+bool hf_hdf5_is(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t type);
+
 /* Opens a group (H5I_GROUP) or a data set (H5I_DATASET). All stored objects are opened here. Records damage if the
  * object is missing or of another type, or if the values of a data set are not all in this file. Returns a negative id
  * then. */
@@ -180,9 +183,9 @@ void hf_hdf5_walk(hf_hdf5 *io, hf_hdf5_visit *visit, void *context);
 /* ---- Data sets ---- */
 
 /* hf_hdf5_make_array makes a data set with its attributes and returns its id, which the caller closes. chunk: NULL, or
- * [rank] for a data set that grows along its first dimension; it has no rows at first. hf_hdf5_write_array makes a data
+ * [rank] for a data set that grows along its first dimension; it has no rows at first. packs: as in hf_hdf5_write_packed. hf_hdf5_write_array makes a data
  * set of fixed size and writes all its values. */
-hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const hsize_t *chunk);
+hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const hsize_t *chunk, bool packs);
 void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const void *values);
 
 /* Writes or reads rows row to row + array->dims[0] - 1 of a data set below `group` that grows. Writing sets its number
@@ -238,11 +241,13 @@ void hf_hdf5_take_strings(hf_hdf5 *io, hid_t group, const char *name, const hf_h
 /* ---- Attributes of the object `name` below `place` ("." is `place` itself) ---- */
 
 /* hf_hdf5_put writes n values (n = 0: a scalar) as an attribute and replaces an attribute of the same name. It does not
- * take HF_KIND_CHARS. hf_hdf5_put_text writes a text of variable length, hf_hdf5_put_chars one of fixed length. */
+ * take HF_KIND_CHARS. hf_hdf5_put_text writes a text of variable length, hf_hdf5_put_chars one of fixed length, and
+ * hf_hdf5_put_ascii one of fixed length that is declared as ASCII and not empty. */
 void hf_hdf5_put(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const hf_hdf5_kind *kind, hsize_t n,
                  const void *values);
 void hf_hdf5_put_text(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text);
 void hf_hdf5_put_chars(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text);
+void hf_hdf5_put_ascii(hf_hdf5 *io, hid_t place, const char *name, const char *attribute, const char *text);
 
 /* Reads one value. HF_KIND_CHARS: reads a string with its NUL into the `size` bytes at `value`; a longer string is
  * damage. A missing attribute is a failure (hf_hdf5_missing). */

@@ -53,11 +53,10 @@ static bool is_hard(hf_hdf5 *io, hid_t place, const char *name)
     return io->status == HF_OK;
 }
 
-/* Returns true for a group. Below a data set there are no objects, so a path through one does not exist. */
-static bool is_group(hf_hdf5 *io, hid_t place, const char *name)
+bool hf_hdf5_is(hf_hdf5 *io, hid_t place, const char *name, H5I_type_t type)
 {
     hid_t object = H5Oopen(place, name, H5P_DEFAULT);
-    bool is = object >= 0 && H5Iget_type(object) == H5I_GROUP;
+    bool is = object >= 0 && H5Iget_type(object) == type;
     if (object < 0) hf_hdf5_fail(io, "read", place, name);
     hf_hdf5_close(io, object);
     return is;
@@ -77,7 +76,8 @@ bool hf_hdf5_has(hf_hdf5 *io, hid_t place, const char *name)
         htri_t has = H5Lexists(place, part, H5P_DEFAULT);
         if (has < 0) hf_hdf5_fail(io, "read", place, part);
         if (has <= 0 || !is_hard(io, place, part)) return false;
-        if (*end && *part && !is_group(io, place, part)) return false;
+        /* Below a data set there are no objects, so a path through one does not exist. */
+        if (*end && *part && !hf_hdf5_is(io, place, part, H5I_GROUP)) return false;
     }
     return true;
 }

@@ -35,40 +35,6 @@ static hf_status fail(const hf_journal *j, const char *what, const char *path, h
     return hf_error(messages, HF_IO, "%s: cannot %s %s: %s", j->result, what, path, strerror(errno));
 }
 
-/* Opens and locks the journal. Returns HF_OK with j->file -1 if the name belongs to a link or to another thing that is
- * no ordinary file. */
-static hf_status open_and_lock(hf_journal *j, hf_messages *messages)
-{
-    bool was_there;
-    for (int i = 0; i < OPEN_ATTEMPTS; i++) {
-        j->file = hf_file_out_keep(j->path, &was_there);
-        j->was_there |= was_there;
-        if (j->file < 0 && errno == EEXIST) return HF_OK;
-        if (j->file < 0) return fail(j, "create", j->path, messages);
-        hf_lock lock = hf_file_io_lock(j->file);
-        if (lock == HF_LOCK_TAKEN || lock == HF_LOCK_FAILED) {
-            int why = errno;
-            close(j->file);
-            j->file = -1;
-            errno = why;
-            if (lock == HF_LOCK_FAILED) return fail(j, "lock", j->path, messages);
-            return hf_error(messages, HF_EXISTS,
-                            "%s: another process is writing it (that process holds the lock of "
-                            "%s)",
-                            j->result, j->path);
-        }
-        if (lock == HF_LOCK_NONE && i == 0)
-            hf_warning(messages,
-                       "%s: this file system has no locks (%s), so hifdm cannot keep a second process from writing "
-                       "this result. Do not start one",
-                       j->result, strerror(errno));
-        if (hf_path_leads_to(j->path, j->file)) return HF_OK;
-        close(j->file); /* its owner rotated or removed it between open and lock */
-        j->file = -1;
-    }
-    return hf_error(messages, HF_EXISTS, "%s: %s keeps changing. Is another process writing it?", j->result, j->path);
-}
-
 typedef enum { JOURNAL, OTHER_VERSION, FOREIGN } content;
 
 static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
@@ -87,6 +53,40 @@ static hf_status look_at_head(hf_journal *j, content *is, hf_messages *messages)
     return HF_OK;
 }
 
+/* Opens and locks the journal, and looks at its head. Returns HF_OK with j->file -1 if the name belongs to a link or to
+ * another thing that is no ordinary file. */
+static hf_status open_and_lock(hf_journal *j, content *is, hf_messages *messages)
+{
+    bool was_there;
+    for (int i = 0; i < OPEN_ATTEMPTS; i++) {
+        j->file = hf_file_out_keep(j->path, &was_there);
+        j->was_there |= was_there;
+        if (j->file < 0 && errno == EEXIST) return look_at_head(j, is, messages);
+        if (j->file < 0) return fail(j, "create", j->path, messages);
+        hf_lock lock = hf_file_io_lock(j->file);
+        if (lock == HF_LOCK_TAKEN || lock == HF_LOCK_FAILED) {
+            int why = errno;
+            close(j->file);
+            j->file = -1;
+            errno = why;
+            if (lock == HF_LOCK_FAILED) return fail(j, "lock", j->path, messages);
+            return hf_error(messages, HF_EXISTS,
+                            "%s: another process is writing it (that process holds the lock of "
+                            "%s)",
+                            j->result, j->path);
+        }
+        if (lock == HF_LOCK_NONE && i == 0)
+            hf_warning(messages,
+                       "%s: this file system has no locks (%s), so hifdm cannot keep a second process from writing "
+                       "this result. Do not start one",
+                       j->result, strerror(errno));
+        if (hf_path_leads_to(j->path, j->file)) return look_at_head(j, is, messages);
+        close(j->file); /* its owner rotated or removed it between open and lock */
+        j->file = -1;
+    }
+    return hf_error(messages, HF_EXISTS, "%s: %s keeps changing. Is another process writing it?", j->result, j->path);
+}
+
 hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_messages *messages)
 {
     size_t size = strlen(result) + 16;
@@ -94,14 +94,12 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
     *j = (hf_journal){.file = -1, .result = result, .path = malloc(size)};
     if (!j->path) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", result);
     snprintf(j->path, size, "%s.journal", result);
-    HF_TRY(open_and_lock(j, messages));
-    HF_TRY(look_at_head(j, &is, messages));
+    HF_TRY(open_and_lock(j, &is, messages));
     if (is != JOURNAL && replaces) { /* unlink, not truncate: the name may be a link to another file */
         if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
         hf_warning(messages, "%s: %s was not a journal of hifdm and is replaced", result, j->path);
         if (j->file >= 0) close(j->file);
-        HF_TRY(open_and_lock(j, messages));
-        HF_TRY(look_at_head(j, &is, messages));
+        HF_TRY(open_and_lock(j, &is, messages));
     }
     if (is == JOURNAL) return HF_OK;
     if (j->file >= 0) close(j->file);
@@ -151,11 +149,6 @@ hf_status hf_journal_restart(hf_journal *j, const char *identity, hf_messages *m
     j->is_new = true;
     j->has_news = false;
     return HF_OK;
-}
-
-void hf_journal_forget(hf_journal *j)
-{
-    j->size = 0;
 }
 
 bool hf_journal_is_empty(const hf_journal *j)

@@ -69,10 +69,8 @@ hf_status hf_journal_tend(hf_journal *journal, double now_s, hf_messages *messag
  * or HF_IO. */
 hf_status hf_journal_rotate(hf_journal *journal, hf_messages *messages);
 
-/* hf_journal_is_empty returns true if the journal has no records. After hf_journal_forget the journal counts as
- * empty. */
+/* Returns true if the journal has no records. */
 bool hf_journal_is_empty(const hf_journal *journal);
-void hf_journal_forget(hf_journal *journal);
 
 /* Releases the lock and closes the file; with `remove` it deletes the file, too. */
 void hf_journal_close(hf_journal *journal, bool remove);

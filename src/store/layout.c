@@ -17,29 +17,26 @@
 #define WORD(name, value, word) word,
 #define FIRST_WORD(name, value, word, ...) word,
 #define VALUE(name, value, ...) value,
-static const char *const status_word[] = {HF_STATUS_LIST(FIRST_WORD)};
-static const signed char status_value[] = {HF_STATUS_LIST(VALUE)};
-static const char *const stop_word[] = {HF_STOP_REASON_LIST(WORD)};
-static const signed char stop_value[] = {HF_STOP_REASON_LIST(VALUE)};
-static const char *const coupling_word[] = {HF_COUPLING_STOP_LIST(WORD)};
-static const signed char coupling_value[] = {HF_COUPLING_STOP_LIST(VALUE)};
-static const char *const bound_word[] = {HF_BOUND_REASON_LIST(FIRST_WORD)};
-static const signed char bound_value[] = {HF_BOUND_REASON_LIST(VALUE)};
+/* Defines a kind by such a list. */
+#define LISTED(kind, name, LIST, WORD)                                                                                 \
+    static const char *const name##_word[] = {LIST(WORD)};                                                             \
+    static const signed char name##_value[] = {LIST(VALUE)};                                                           \
+    kind = {HF_HDF5_ENUM, HF_HDF5_COUNT(name##_word), name##_word, name##_value}
+LISTED(const hf_hdf5_kind hf_layout_status, status, HF_STATUS_LIST, FIRST_WORD);
+LISTED(static const hf_hdf5_kind kind_of_stop_reason, stop, HF_STOP_REASON_LIST, WORD);
+LISTED(static const hf_hdf5_kind kind_of_coupling_stop, coupling, HF_COUPLING_STOP_LIST, WORD);
+LISTED(static const hf_hdf5_kind kind_of_bound_reason, bound, HF_BOUND_REASON_LIST, FIRST_WORD);
 
 /* Values of the words are 0, 1, 2, ... Lists of words for ENDED_WORDS end with NULL. */
 #define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL
 #define ENDED_WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word) - 1, word, NULL
-#define VALUES(word, value) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, value
 const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)}, hf_layout_group = {WORDS(hf_group_word)};
-const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)}, hf_layout_status = {VALUES(status_word, status_value)};
+const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
 static const hf_hdf5_kind kind_of_joint = {ENDED_WORDS(hf_joint_word)}, kind_of_unit = {WORDS(hf_unit_word)};
 static const hf_hdf5_kind kind_of_search_stop = {WORDS(hf_population_stop_word)};
 static const hf_hdf5_kind kind_of_refine_stop = {WORDS(hf_refine_stop_word)};
 static const hf_hdf5_kind kind_of_surface = {ENDED_WORDS(hf_surface_kind_word)};
 static const hf_hdf5_kind kind_of_feed = {HF_HDF5_ENUM, 4, hf_feed_word, NULL};
-static const hf_hdf5_kind kind_of_stop_reason = {VALUES(stop_word, stop_value)};
-static const hf_hdf5_kind kind_of_coupling_stop = {VALUES(coupling_word, coupling_value)};
-static const hf_hdf5_kind kind_of_bound_reason = {VALUES(bound_word, bound_value)};
 /* Stored as its number, without words. */
 static const hf_hdf5_kind kind_of_solver = {HF_HDF5_INT, HF_HDF5_COUNT(hf_solver_word), hf_solver_word, NULL};
 #define HF_KIND_JOINT (&kind_of_joint)
@@ -126,10 +123,10 @@ void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layo
     }
 }
 
-void hf_layout_renew(hf_hdf5 *io, const char *path)
+void hf_layout_renew(hf_hdf5 *io, hid_t place, const char *name)
 {
-    if (io->status == HF_OK && hf_hdf5_has(io, io->file, path) && H5Ldelete(io->file, path, H5P_DEFAULT) < 0)
-        hf_hdf5_fail(io, "replace", io->file, path);
+    if (hf_hdf5_has(io, place, name) && H5Ldelete(place, name, H5P_DEFAULT) < 0)
+        hf_hdf5_fail(io, "replace", place, name);
 }
 
 /* ---- fields ---- */

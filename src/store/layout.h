@@ -63,9 +63,9 @@ extern const hf_layout_column hf_layout_truss_state[]; /* hf_carrier_state in /t
 void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_column *columns, int n_node,
                             int n_cable, const void *owner);
 
-/* Removes the object `path` if it exists, so that it can be written again. A resumed run needs this if an earlier
+/* Removes the object `name` below `place` if it exists, so that it can be written again. A resumed run needs this if an earlier
  * session has written the object. */
-void hf_layout_renew(hf_hdf5 *io, const char *path);
+void hf_layout_renew(hf_hdf5 *io, hid_t place, const char *name);
 
 /* ---- Fields: members of structs and their data sets ---- */
 
@@ -82,16 +82,11 @@ typedef struct {
 
 /* HF_LAYOUT_FIELD: `member` is an array of the struct `type`. HF_LAYOUT_MEMBER: the owner is an array of `type`. */
 #define HF_LAYOUT_FIELD(type, name, member, kind, units, description)                                                  \
-    {name,                                                                                                             \
-     HF_KIND_##kind,                                                                                                   \
-     units,                                                                                                            \
-     description,                                                                                                      \
-     offsetof(type, member),                                                                                           \
-     sizeof(((type *)0)->member[0]),                                                                                   \
-     sizeof(((type *)0)->member[0]),                                                                                   \
-     0},
+    HF_LAYOUT_STRIDED(type, name, member[0], kind, units, description, sizeof(((type *)0)->member[0]), 0)
 #define HF_LAYOUT_MEMBER(type, name, member, kind, units, description)                                                 \
-    {name, HF_KIND_##kind, units, description, offsetof(type, member), sizeof(type), sizeof(((type *)0)->member), 0},
+    HF_LAYOUT_STRIDED(type, name, member, kind, units, description, sizeof(type), 0)
+#define HF_LAYOUT_STRIDED(type, name, item, kind, units, description, stride, columns)                                 \
+    {name, HF_KIND_##kind, units, description, offsetof(type, item), stride, sizeof(((type *)0)->item), columns},
 #define HF_LAYOUT_TABLE(table) table, HF_HDF5_COUNT(table)
 
 /* Writes or reads n values of each field as data sets [n], or [n / columns][columns] with columns > 0. Nothing is done
@@ -183,21 +178,14 @@ void hf_layout_write_coupling(hf_hdf5 *io, const hf_model *model, const hf_works
 
 /* The far field of a stage, in /pattern/STAGE. Its attributes describe the feed. Its data sets, for f frequencies, c
  * cuts and t angles, are frequency_Hz [f], phi_deg [c], theta_deg [t], co_dBi and cross_dBi [f][c][t], and the members
- * of hf_cut_figures [f][c]. hf_layout_read_pattern reads all arrays of one stage into a new table, which the caller
- * frees in any case. */
-void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *table, const hf_pattern_summary *figures);
-void hf_layout_read_pattern(hf_hdf5 *io, int stage, hf_pattern_table *table);
+ * of hf_cut_figures [f][c]. layout_stage also has hf_store_pattern and hf_store_read_pattern. */
 
 #define HF_LAYOUT_LOAD_CASE_SIZE (HF_SET_NAME_SIZE + 32) /* bytes of the path of a group of a load case */
 
 /* layout_front: the group /front of optimize.front; the objectives of the summary name its objectives.
- * hf_layout_get_front reads the front without its designs and tabulates it in the summary. hf_layout_read_front reads
- * the whole front and *variable, the names of the design variables, [n_variable] of *variable_size bytes each. The
- * caller frees both in any case. */
-void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
-                           const hf_front *front);
+ * hf_layout_get_front reads the front without its designs and tabulates it in the summary. layout_front also has
+ * hf_store_front and hf_store_read_front. */
 void hf_layout_get_front(hf_hdf5 *io, hf_summary *summary);
-void hf_layout_read_front(hf_hdf5 *io, hf_front *front, char **variable, size_t *variable_size);
 
 /* Writes or reads the point of a front that is the result of this run, as attributes of /case. If there are no such
  * attributes, reading changes nothing. */
@@ -207,12 +195,8 @@ void hf_layout_pass_taken(hf_hdf5 *io, bool writes, const hf_front_origin *taken
 void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary);
 
-/* layout_truss: the truss as described, its attachments and, if `state` is not NULL, its displacements and forces under
- * the pull of the net. Reading allocates truss and state; the caller frees both in any case. */
-void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state);
-void hf_layout_read_truss(hf_hdf5 *io, hf_truss *truss, hf_carrier_state *state);
-
-/* Makes the group `path` of a truss with its groups node and member, and returns it. */
+/* layout_truss: hf_store_truss, hf_store_read_truss, and the parts of a truss in a load case. hf_layout_make_truss makes
+ * the group `path` of a truss with its groups node and member, and returns it. */
 hid_t hf_layout_make_truss(hf_hdf5 *io, const char *path);
 
 /* Reads the displacements and forces alone, from the group `group`. If it has none, *state does not change. */

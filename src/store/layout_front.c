@@ -1,6 +1,7 @@
 /* Writes and reads the group /front, and the point that a run has taken from another front. In memory a front is an
  * array of points; in the file each member of the points is a data set. */
-#include "store/layout.h"
+#include "store/store_internal.h"
+#include "store/store_read.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -48,19 +49,11 @@ static void write_variables(hf_hdf5 *io, hid_t group, const hf_scene *scene, con
     free(text);
 }
 
-static void put_attributes(hf_hdf5 *io, hid_t group, const hf_front *front, const hf_front_table *t)
+hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *m, const hf_summary *s,
+                         const hf_front *front, hf_messages *messages)
 {
-    hf_hdf5_put(io, group, ".", "n_on", HF_KIND_INT, 0, &t->n_on);
-    hf_hdf5_put(io, group, ".", "n_dominated", HF_KIND_INT, 0, &t->n_dominated);
-    hf_hdf5_put(io, group, ".", "n_failed", HF_KIND_INT, 0, &t->n_failed);
-    hf_hdf5_put(io, group, ".", "minimised", HF_KIND_INT, 0, &t->minimised);
-    hf_hdf5_put(io, group, ".", "knee", HF_KIND_INT, 0, &front->knee);
-    hf_hdf5_put(io, group, ".", "wall_s", HF_KIND_REAL, 0, &t->wall_s);
-}
-
-void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m, const hf_summary *s,
-                           const hf_front *front)
-{
+    if (!store) return HF_OK;
+    hf_hdf5 *io = hf_store_enter(store, messages);
     hf_layout_field field[N_FIELD];
     int n = front->n_point, k = front->n_objective;
     const hsize_t dims[2] = {(hsize_t)n, (hsize_t)front->n_variable};
@@ -68,7 +61,7 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
                                 "",     "number, figure and set"};
     const hf_hdf5_array design = hf_layout_of_variables("design", m->variable, 2, dims);
     list_fields(k, field);
-    hf_layout_renew(io, "/front");
+    hf_layout_renew(io, io->file, "/front");
     hid_t group = hf_hdf5_make_group(io, "/front");
     hf_hdf5_write_array(io, group, &name, s->objectives.name);
     hf_hdf5_write_list(io, group, "initial", HF_KIND_REAL, k, 0, "", "objectives of the initial design",
@@ -76,20 +69,17 @@ void hf_layout_write_front(hf_hdf5 *io, const hf_scene *scene, const hf_model *m
     hf_layout_pass_fields(io, true, group, field, N_FIELD, n, 0, front->point);
     hf_hdf5_write_array(io, group, &design, front->design);
     write_variables(io, group, scene, m);
-    put_attributes(io, group, front, s->front);
+    hf_hdf5_put(io, group, ".", "n_on", HF_KIND_INT, 0, &s->front->n_on);
+    hf_hdf5_put(io, group, ".", "n_dominated", HF_KIND_INT, 0, &s->front->n_dominated);
+    hf_hdf5_put(io, group, ".", "n_failed", HF_KIND_INT, 0, &s->front->n_failed);
+    hf_hdf5_put(io, group, ".", "minimised", HF_KIND_INT, 0, &s->front->minimised);
+    hf_hdf5_put(io, group, ".", "knee", HF_KIND_INT, 0, &front->knee);
+    hf_hdf5_put(io, group, ".", "wall_s", HF_KIND_REAL, 0, &s->front->wall_s);
     hf_hdf5_close(io, group);
+    return hf_hdf5_unlock(io->status);
 }
 
 /* ---- reading ---- */
-
-static void read_points(hf_hdf5 *io, hid_t group, int n, int n_objective, hf_front_point *point)
-{
-    hf_layout_field field[N_FIELD];
-    list_fields(n_objective, field);
-    for (int i = 0; i < n; i++)
-        point[i] = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
-    hf_layout_pass_fields(io, false, group, field, N_FIELD, n, 0, point);
-}
 
 static bool is_index(int value, int n)
 {
@@ -99,13 +89,17 @@ static bool is_index(int value, int n)
 /* Reads a front of n_variable design variables without its designs. The caller frees it. */
 static void read_front(hf_hdf5 *io, hid_t group, int n_variable, hf_front *front)
 {
+    hf_layout_field field[N_FIELD];
     int n_objective = hf_hdf5_length(io, group, "initial", HF_FRONT_OBJECTIVES_MAX);
     int n_point = hf_hdf5_length(io, group, "status", POINTS_MAX);
     if (io->status == HF_OK && hf_front_create(n_objective, n_variable, n_point, front) != HF_OK) hf_hdf5_no_memory(io);
     hf_hdf5_get(io, group, ".", "minimised", HF_KIND_INT, &front->minimised, 0);
     hf_hdf5_get(io, group, ".", "knee", HF_KIND_INT, &front->knee, 0);
     hf_hdf5_read_list(io, group, "initial", HF_KIND_REAL, n_objective, 0, front->initial);
-    if (io->status == HF_OK) read_points(io, group, n_point, n_objective, front->point);
+    list_fields(n_objective, field);
+    for (int i = 0; i < n_point && io->status == HF_OK; i++)
+        front->point[i] = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
+    hf_layout_pass_fields(io, false, group, field, N_FIELD, n_point, 0, front->point);
     if (io->status == HF_OK && (!is_index(front->minimised, n_objective) || !is_index(front->knee, n_point)))
         hf_hdf5_damaged(io, group, ".", "has a knee or a minimised objective that is not there");
 }
@@ -125,14 +119,26 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
     hf_front_free(&front);
 }
 
-void hf_layout_read_front(hf_hdf5 *io, hf_front *front, char **variable, size_t *variable_size)
+hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
+                              hf_messages *messages)
 {
-    hid_t group = hf_hdf5_open_group(io, "/front");
-    int n_variable = hf_hdf5_length(io, group, "variable", VARIABLES_MAX);
-    read_front(io, group, n_variable, front);
-    hf_hdf5_read_list(io, group, "design", HF_KIND_REAL, front->n_point, n_variable, front->design);
-    if (io->status == HF_OK) *variable = hf_hdf5_read_strings(io, group, "variable", n_variable, variable_size);
-    hf_hdf5_close(io, group);
+    *front = (hf_front){.minimised = -1, .knee = -1};
+    *variable = NULL;
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/front"))
+        io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.front", path);
+    hid_t group = hf_hdf5_open_group(&io, "/front");
+    int n_variable = hf_hdf5_length(&io, group, "variable", VARIABLES_MAX);
+    read_front(&io, group, n_variable, front);
+    hf_hdf5_read_list(&io, group, "design", HF_KIND_REAL, front->n_point, n_variable, front->design);
+    if (io.status == HF_OK) *variable = hf_hdf5_read_strings(&io, group, "variable", n_variable, variable_size);
+    hf_hdf5_close(&io, group);
+    if (hf_store_close_result(&io) != HF_OK) {
+        hf_front_free(front);
+        free(*variable);
+        *variable = NULL;
+    }
+    return io.status;
 }
 
 /* ---- a point that was taken ---- */

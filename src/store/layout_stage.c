@@ -8,11 +8,11 @@
  *     /load_cases     names and figures of the load cases
  *
  * Sections: groups of stages, surface, far field, sets and limits, objectives, coupling, load cases. */
-#include "store/layout.h"
+#include "store/store_internal.h"
+#include "store/store_read.h"
 
 #include "base/text.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -70,7 +70,7 @@ static void pass_surface(hf_hdf5 *io, bool writes, hf_summary *s)
     char path[PATH_SIZE];
     hf_double_list *at = &s->surface.frequencies_Hz;
     if (writes ? !(s->surface.focal_length_m > 0) : !hf_hdf5_has(io, io->file, "/surface")) return;
-    if (writes) hf_layout_renew(io, "/surface");
+    if (writes) hf_layout_renew(io, io->file, "/surface");
     hid_t group = hf_hdf5_make_group(io, "/surface");
     hf_layout_pass_members(io, writes, "/surface", settings, HF_HDF5_COUNT(settings), &s->surface);
     if (!writes)
@@ -117,17 +117,21 @@ static const hf_result_field feed[] = {
             FEED("axis_z", axis[2], REAL) FEED("polarisation_x", co[0], REAL) FEED("polarisation_y", co[1], REAL)
                 FEED("polarisation_z", co[2], REAL) FEED("cos_power", cos_power, REAL) FEED("scale", scale, REAL)};
 
-void hf_layout_write_pattern(hf_hdf5 *io, int stage, const hf_pattern_table *t, const hf_pattern_summary *s)
+hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *t, const hf_pattern_summary *s,
+                           hf_messages *messages)
 {
     char path[PATH_SIZE];
+    if (!store) return HF_OK;
+    hf_hdf5 *io = hf_store_enter(store, messages);
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/pattern"));
-    hf_layout_renew(io, path_of("/pattern", stage, path));
+    hf_layout_renew(io, io->file, path_of("/pattern", (int)stage, path));
     hid_t group = hf_hdf5_make_group(io, path);
     hf_layout_pass_members(io, true, path, feed, HF_HDF5_COUNT(feed), (void *)&s->feed);
     pass_arrays(io, true, group, t);
     hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(cut_figures), t->n_frequency * t->n_cut, t->n_cut,
                           (void *)s->figure);
     hf_hdf5_close(io, group);
+    return hf_hdf5_unlock(io->status);
 }
 
 /* Reads all but the gain at each angle. */
@@ -138,10 +142,8 @@ static void get_pattern(hf_hdf5 *io, hf_summary *summary, int stage)
     hf_pattern_summary *s = summary->stage[stage].pattern = hf_hdf5_take(io, 1, sizeof *s);
     if (!s) return;
     hid_t group = hf_hdf5_open_group(io, path);
-    int f = hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX);
-    int c = hf_hdf5_length(io, group, "phi_deg", HF_PATTERN_CUTS);
-    s->n_frequency = f;
-    s->n_cut = c;
+    int f = s->n_frequency = hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX);
+    int c = s->n_cut = hf_hdf5_length(io, group, "phi_deg", HF_PATTERN_CUTS);
     hf_hdf5_read_list(io, group, "frequency_Hz", HF_KIND_REAL, f, 0, s->frequency_Hz);
     hf_hdf5_read_list(io, group, "phi_deg", HF_KIND_REAL, c, 0, s->phi_deg);
     hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(cut_figures), f * c, c, s->figure);
@@ -149,16 +151,20 @@ static void get_pattern(hf_hdf5 *io, hf_summary *summary, int stage)
     hf_hdf5_close(io, group);
 }
 
-void hf_layout_read_pattern(hf_hdf5 *io, int stage, hf_pattern_table *t)
+hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *t, hf_messages *messages)
 {
-    char path[PATH_SIZE];
-    hid_t group = hf_hdf5_open_group(io, path_of("/pattern", stage, path));
-    int f = hf_hdf5_length(io, group, "frequency_Hz", HF_LIST_MAX);
-    int c = hf_hdf5_length(io, group, "phi_deg", HF_PATTERN_CUTS);
-    int n = hf_hdf5_length(io, group, "theta_deg", ANGLES_MAX);
-    if (io->status == HF_OK && hf_pattern_table_create(f, c, n, t) != HF_OK) hf_hdf5_no_memory(io);
-    if (io->status == HF_OK) pass_arrays(io, false, group, t);
-    hf_hdf5_close(io, group);
+    char name[PATH_SIZE];
+    *t = (hf_pattern_table){0};
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    hid_t group = hf_hdf5_open_group(&io, path_of("/pattern", (int)stage, name));
+    int f = hf_hdf5_length(&io, group, "frequency_Hz", HF_LIST_MAX);
+    int c = hf_hdf5_length(&io, group, "phi_deg", HF_PATTERN_CUTS);
+    int n = hf_hdf5_length(&io, group, "theta_deg", ANGLES_MAX);
+    if (io.status == HF_OK && hf_pattern_table_create(f, c, n, t) != HF_OK) hf_hdf5_no_memory(&io);
+    if (io.status == HF_OK) pass_arrays(&io, false, group, t);
+    hf_hdf5_close(&io, group);
+    if (hf_store_close_result(&io) != HF_OK) hf_pattern_table_free(t);
+    return io.status;
 }
 
 /* ---- sets and limits ---- */
@@ -249,17 +255,6 @@ const double *hf_layout_objectives(const hf_summary *s, int stage)
     return s->objectives.n > 0 && hf_summary_has_shape(s, (hf_stage)stage) ? s->stage[stage].result.objective : NULL;
 }
 
-/* Describes the values of all rows in the result of a stage. */
-static hf_layout_field objective_values(int stage)
-{
-    return (hf_layout_field){.name = hf_stage_word[stage],
-                             .kind = HF_KIND_REAL,
-                             .units = "",
-                             .description = "value of each objective, in its own unit",
-                             .stride = sizeof(double),
-                             .size = sizeof(double)};
-}
-
 /* Takes the names as they are read, of an earlier version by their names of today. */
 static void name_objectives(hf_hdf5 *io, hf_objective_list *g)
 {
@@ -279,7 +274,7 @@ void hf_layout_pass_objectives(hf_hdf5 *io, bool writes, const hf_summary *summa
     hf_summary *s = (hf_summary *)summary;
     hf_objective_list *g = &s->objectives;
     if (writes ? g->n == 0 : !hf_hdf5_has(io, io->file, "/objective")) return;
-    if (writes) hf_layout_renew(io, "/objective");
+    if (writes) hf_layout_renew(io, io->file, "/objective");
     hid_t group = hf_hdf5_make_group(io, "/objective");
     if (!writes) {
         g->is_front = !hf_hdf5_has(io, group, "weight");
@@ -292,7 +287,12 @@ void hf_layout_pass_objectives(hf_hdf5 *io, bool writes, const hf_summary *summa
         hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(objective_fits), g->n, 0, g);
     if (!g->is_front) hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(objective_weights), g->n, 0, g);
     for (int i = 0; i < HF_N_STAGE; i++) {
-        const hf_layout_field values = objective_values(i);
+        const hf_layout_field values = {.name = hf_stage_word[i],
+                                        .kind = HF_KIND_REAL,
+                                        .units = "",
+                                        .description = "value of each objective, in its own unit",
+                                        .stride = sizeof(double),
+                                        .size = sizeof(double)};
         if (hf_layout_objectives(s, i))
             hf_layout_pass_fields(io, writes, group, &values, 1, g->n, 0, s->stage[i].result.objective);
     }
@@ -364,7 +364,7 @@ static void pass_load_cases(hf_hdf5 *io, bool writes, hf_summary *s)
     /* An unfinished result has shapes of load cases, but no list of their names yet. */
     if (writes ? n == 0 : !hf_hdf5_has(io, io->file, "/load_cases/name")) return;
     hid_t group = hf_hdf5_make_group(io, "/load_cases");
-    if (writes) hf_layout_renew(io, "/load_cases/name");
+    if (writes) hf_layout_renew(io, io->file, "/load_cases/name");
     if (!writes) n = hf_hdf5_length(io, group, "name", HF_LOAD_CASES_MAX);
     if (!writes && n > 0) s->load_case = hf_hdf5_take(io, (size_t)n, sizeof *s->load_case);
     hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(load_case_names), n, 0, s->load_case);
@@ -386,8 +386,8 @@ void hf_layout_pass_stages(hf_hdf5 *io, bool writes, const hf_summary *summary)
 {
     hf_summary *s = (hf_summary *)summary;
     pass_surface(io, writes, s);
-    if (writes) hf_layout_renew(io, "/set_tension");
-    if (writes) hf_layout_renew(io, "/at_limit");
+    if (writes) hf_layout_renew(io, io->file, "/set_tension");
+    if (writes) hf_layout_renew(io, io->file, "/at_limit");
     for (int i = 0; i < HF_N_STAGE; i++) {
         if (!writes) get_pattern(io, s, i);
         pass_lists(io, writes, &s->stage[i], i);

@@ -1,7 +1,6 @@
 /* Writes and reads the statistics of the as-built samples in the group /tolerance, by tables of fields. */
 #include "store/layout.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define GROUP "/tolerance"
@@ -18,8 +17,8 @@ typedef struct {
 
 #define MEASURED(name, member, kind, description) HF_LAYOUT_MEMBER(measured, name, member, kind, "", description)
 #define QUANTILE(name, member, description)                                                                            \
-    {name,           HF_KIND_REAL,          "", description, offsetof(measured, figures.member), sizeof(measured),     \
-     sizeof(double), HF_TOLERANCE_QUANTILES},
+    HF_LAYOUT_STRIDED(measured, name, figures.member[0], REAL, "", description, sizeof(measured),                      \
+                      HF_TOLERANCE_QUANTILES)
 static const hf_layout_field measured_field[] = {
     MEASURED("measure", word, CHARS, "what the rows of the figures describe") MEASURED(
         "is_measured", is_measured, REAL, "1: of the samples; 0: not in this case")

@@ -1,5 +1,6 @@
 /* Writes and reads the group /truss. Sections: supports, writing, reading. */
-#include "store/layout.h"
+#include "store/store_internal.h"
+#include "store/store_read.h"
 
 #include "base/arena.h"
 
@@ -39,7 +40,7 @@ hid_t hf_layout_make_truss(hf_hdf5 *io, const char *path)
     return group;
 }
 
-void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carrier_state *state)
+hf_status hf_store_truss(hf_store *s, const hf_carrier *carrier, const hf_carrier_state *state, hf_messages *messages)
 {
     static const hf_layout_column attachment_column[] = {
         {"attachment/net_node", HF_KIND_INT, 0, 1, "", "support of the net, as index from 0 into /scene/node",
@@ -47,7 +48,9 @@ void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carr
         {"attachment/truss_node", HF_KIND_INT, 0, 1, "", "truss node that carries it, as index from 0 into /truss/node",
          offsetof(hf_carrier, truss_node)},
         {0}};
+    if (!s) return HF_OK;
     const hf_truss *t = &carrier->truss;
+    hf_hdf5 *io = hf_store_enter(s, messages);
     hid_t group = hf_layout_make_truss(io, "/truss");
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/truss/attachment"));
     hf_hdf5_write_ids(io, group, "node/id", t->node_id, t->n_node, "name of the node");
@@ -57,6 +60,7 @@ void hf_layout_write_truss(hf_hdf5 *io, const hf_carrier *carrier, const hf_carr
     hf_layout_pass_columns(io, true, group, attachment_column, carrier->n_attachment, 0, carrier);
     if (state) hf_layout_pass_columns(io, true, group, hf_layout_truss_state, t->n_node, t->n_member, state);
     hf_hdf5_close(io, group);
+    return hf_hdf5_unlock(io->status);
 }
 
 /* ---- reading ---- */
@@ -72,19 +76,32 @@ void hf_layout_read_truss_state(hf_hdf5 *io, hid_t group, const hf_truss *t, hf_
         hf_layout_pass_columns(io, false, group, hf_layout_truss_state, t->n_node, t->n_member, state);
 }
 
-void hf_layout_read_truss(hf_hdf5 *io, hf_truss *t, hf_carrier_state *state)
+hf_status hf_store_read_truss(const char *path, hf_truss *t, hf_carrier_state *state, hf_messages *messages)
 {
-    hid_t group = hf_hdf5_open_group(io, "/truss");
-    int n_node = hf_hdf5_length(io, group, "node/mass_kg", HF_LAYOUT_COUNT_MAX);
-    int n_member = hf_hdf5_length(io, group, "member/joint", HF_LAYOUT_COUNT_MAX);
-    if (io->status == HF_OK && hf_truss_allocate(t, n_node, n_member, false) != HF_OK) hf_hdf5_no_memory(io);
-    hf_layout_pass_columns(io, false, group, hf_layout_truss, n_node, n_member, t);
-    if (io->status == HF_OK)
-        hf_hdf5_read_ids(io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
-    if (io->status == HF_OK) pass_fixed(io, false, group, t);
-    for (int k = 0; k < 2 * n_member && io->status == HF_OK; k++)
+    *t = (hf_truss){0};
+    *state = (hf_carrier_state){0};
+    hf_hdf5 io = hf_store_open_result(path, messages);
+    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss") && io.status == HF_OK)
+        io.status = hf_error(messages, HF_IO, "%s: has no truss: its case has no truss section", path);
+    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss/node") && io.status == HF_OK)
+        io.status = hf_error(messages, HF_IO,
+                             "%s: is unfinished, and a run stores its truss at the end; resume the run first", path);
+    hid_t group = hf_hdf5_open_group(&io, "/truss");
+    int n_node = hf_hdf5_length(&io, group, "node/mass_kg", HF_LAYOUT_COUNT_MAX);
+    int n_member = hf_hdf5_length(&io, group, "member/joint", HF_LAYOUT_COUNT_MAX);
+    if (io.status == HF_OK && hf_truss_allocate(t, n_node, n_member, false) != HF_OK) hf_hdf5_no_memory(&io);
+    hf_layout_pass_columns(&io, false, group, hf_layout_truss, n_node, n_member, t);
+    if (io.status == HF_OK)
+        hf_hdf5_read_ids(&io, group, "node/id", n_node, t->node_id, "member/id", n_member, t->member_id, &t->text);
+    if (io.status == HF_OK) pass_fixed(&io, false, group, t);
+    for (int k = 0; k < 2 * n_member && io.status == HF_OK; k++)
         if (t->end[k] < 0 || t->end[k] >= n_node)
-            hf_hdf5_damaged(io, group, "member/end", "names a node that is not there");
-    if (io->status == HF_OK) hf_layout_read_truss_state(io, group, t, state);
-    hf_hdf5_close(io, group);
+            hf_hdf5_damaged(&io, group, "member/end", "names a node that is not there");
+    if (io.status == HF_OK) hf_layout_read_truss_state(&io, group, t, state);
+    hf_hdf5_close(&io, group);
+    if (hf_store_close_result(&io) != HF_OK) {
+        hf_truss_free(t);
+        hf_carrier_state_free(state);
+    }
+    return io.status;
 }

@@ -16,7 +16,6 @@
 #include "store/store_internal.h"
 #include "store/vtkhdf.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <gsl/gsl_version.h>
 #include <math.h>
@@ -162,7 +161,7 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
     hf_hdf5_lock();
     double begin_s = hf_clock_s();
     const hf_optimize_settings *o = &settings->optimize;
-    s->every = o->store == HF_KEEP_BEST ? HF_GENERATIONS_BEST : o->store == HF_KEEP_EVERY ? o->store_every : 1;
+    s->rows.every = o->store == HF_KEEP_BEST ? HF_GENERATIONS_BEST : o->store == HF_KEEP_EVERY ? o->store_every : 1;
     int seen = hf_path_look_at_link(s->f.out.path, &info);
     if (!restart && seen < 0)
         s->f.io.status = hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
@@ -236,9 +235,7 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
 {
     if (!s) return HF_OK;
 #define HISTORY(member, units, description)                                                                            \
-    {                                                                                                                  \
-#member, HF_KIND_REAL, 0, 1, units, description, offsetof(hf_history, member)                                  \
-    }
+    HF_LAYOUT_COLUMN(hf_history, #member, member, REAL, 0, 1, units, description)
     static const hf_layout_column history_column[] = {
         HISTORY(psi_m, "m", "RMS distance of the inner nodes to their target positions, after each linear solve"),
         HISTORY(residual_N, "N", "maximum nodal force out of balance"),
@@ -246,7 +243,6 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
         HISTORY(boundary_tension_ratio, "", "maximum over minimum tension of the boundary cables"),
         HISTORY(length_error, "", "maximum |l/L*-1| over taut cables of law length"),
         {0}};
-#undef HISTORY
     hf_hdf5 *io = hf_store_enter(s, messages);
     if (s->is_resumed) {
         compare_shape(s, m, w);
@@ -264,13 +260,6 @@ hf_status hf_store_form(hf_store *s, const hf_model *m, const hf_workspace *w, c
     return hf_hdf5_unlock(io->status);
 }
 
-/* Removes an object below a group if it exists. */
-static void renew(hf_hdf5 *io, hid_t group, const char *name)
-{
-    if (hf_hdf5_has(io, group, name) && H5Ldelete(group, name, H5P_DEFAULT) < 0)
-        hf_hdf5_fail(io, "replace", group, name);
-}
-
 hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const hf_workspace *w, const double *design,
                          hf_messages *messages)
 {
@@ -278,8 +267,8 @@ hf_status hf_store_shape(hf_store *s, hf_stage stage, const hf_model *m, const h
     hf_hdf5 *io = hf_store_enter(s, messages);
     hid_t group = hf_hdf5_make_group(io, hf_stage_group[stage]);
     for (const hf_layout_column *c = hf_layout_shape; c->name; c++) /* an interrupted session may have left a shape */
-        renew(io, group, c->name);
-    renew(io, group, "design");
+        hf_layout_renew(io, group, c->name);
+    hf_layout_renew(io, group, "design");
     write_shape(io, group, m, w);
     hf_layout_write_variables(io, group, "design", m->variable, m->n_variable, design);
     hf_hdf5_close(io, group);
@@ -294,7 +283,7 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
     hf_hdf5 *io = hf_store_enter(s, messages);
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/load_cases"));
     snprintf(path, sizeof path, "/load_cases/%s", name);
-    hf_layout_renew(io, path);
+    hf_layout_renew(io, io->file, path);
     hid_t group = hf_hdf5_make_group(io, path);
     write_shape(io, group, m, w);
     hf_hdf5_close(io, group);
@@ -305,32 +294,6 @@ hf_status hf_store_built(hf_store *s, const char *name, const hf_model *m, const
                                truss);
         hf_hdf5_close(io, group);
     }
-    return hf_hdf5_unlock(io->status);
-}
-
-hf_status hf_store_truss(hf_store *s, const hf_carrier *carrier, const hf_carrier_state *state, hf_messages *messages)
-{
-    if (!s) return HF_OK;
-    hf_hdf5 *io = hf_store_enter(s, messages);
-    hf_layout_write_truss(io, carrier, state);
-    return hf_hdf5_unlock(io->status);
-}
-
-hf_status hf_store_front(hf_store *s, const hf_scene *scene, const hf_model *m, const hf_summary *summary,
-                         const hf_front *front, hf_messages *messages)
-{
-    if (!s) return HF_OK;
-    hf_hdf5 *io = hf_store_enter(s, messages);
-    hf_layout_write_front(io, scene, m, summary, front);
-    return hf_hdf5_unlock(io->status);
-}
-
-hf_status hf_store_pattern(hf_store *s, hf_stage stage, const hf_pattern_table *table,
-                           const hf_pattern_summary *figures, hf_messages *messages)
-{
-    if (!s) return HF_OK;
-    hf_hdf5 *io = hf_store_enter(s, messages);
-    hf_layout_write_pattern(io, (int)stage, table, figures);
     return hf_hdf5_unlock(io->status);
 }
 
@@ -380,14 +343,17 @@ hf_status hf_store_variables(hf_store *s, const hf_model *m, const hf_population
     hf_hdf5_put(io, group, ".", "n_individual", HF_KIND_INT, 0, &population->n_individual);
     hf_hdf5_put(io, group, ".", "n_variable", HF_KIND_INT, 0, &n);
     hf_hdf5_put(io, group, ".", "generations_limit", HF_KIND_INT, 0, &population->generation_limit);
-    hf_hdf5_put(io, group, ".", "store_every", HF_KIND_INT, 0, &s->every);
+    hf_hdf5_put(io, group, ".", "store_every", HF_KIND_INT, 0, &s->rows.every);
     if (population->n_objective) hf_hdf5_put(io, group, ".", "n_objective", HF_KIND_INT, 0, &population->n_objective);
     hf_hdf5_close(io, group);
     if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, messages);
-    if (io->status == HF_OK && hf_generations_create(population->n_individual, n, population->n_objective,
-                                                     population->generation_limit, s->every, &s->rows) != HF_OK)
-        hf_hdf5_no_memory(io);
-    s->rows.has_rows = population->has_rows;
+    s->rows = (hf_generations){.has_rows = population->has_rows,
+                               .n_individual = population->n_individual,
+                               .n_variable = n,
+                               .n_objective = population->n_objective,
+                               .limit = population->generation_limit,
+                               .every = s->rows.every};
+    if (io->status == HF_OK && hf_generations_create(&s->rows) != HF_OK) hf_hdf5_no_memory(io);
     return hf_hdf5_unlock(io->status);
 }
 
@@ -420,14 +386,6 @@ hf_status hf_store_generation(hf_store *s, const hf_model *m, const hf_populatio
 
 /* ---- summary ---- */
 
-/* Writes the algorithm of each stage beside its figures. */
-static void put_algorithms(hf_hdf5 *io, const hf_summary *summary)
-{
-    for (int i = HF_STAGE_SEARCH; i < HF_N_STAGE; i++)
-        if (summary->stage[i].exists)
-            hf_hdf5_put_chars(io, io->file, hf_stage_group[i], "algorithm", hf_summary_algorithm(summary, (hf_stage)i));
-}
-
 static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
 {
     hf_hdf5 *io = &s->f.io;
@@ -439,7 +397,9 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
             hf_layout_pass_part(io, true, part, summary);
     }
     hf_hdf5_put(io, io->file, "/", "finished", HF_KIND_FLAG, 0, &is_finished);
-    put_algorithms(io, summary);
+    for (hf_stage i = HF_STAGE_SEARCH; i < HF_N_STAGE; i++)
+        if (summary->stage[i].exists)
+            hf_hdf5_put_chars(io, io->file, hf_stage_group[i], "algorithm", hf_summary_algorithm(summary, i));
     if (finished)
         hf_layout_pass_stages(io, true, summary);
     else if (summary->front)
@@ -522,7 +482,7 @@ hf_status hf_store_settle(hf_store *s, hf_messages *messages)
     s->f.io.messages = messages;
     hf_store_file_publish(&s->f, true, true);
     hf_status status = s->f.io.status;
-    if (status == HF_OK) hf_journal_forget(&s->f.journal);
+    if (status == HF_OK) s->f.journal.size = 0; /* the result has its records, so the journal counts as empty */
     hf_store_abandon(s, messages);
     return status;
 }

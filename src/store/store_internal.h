@@ -8,9 +8,8 @@ typedef struct hf_store hf_store;
 
 struct hf_store {
     hf_store_file f;
-    hf_generations rows;
-    int every;     /* as in hf_generations_create, for the rows to come */
-    int n_journal; /* generations that only the journal has, until hf_store_restore has taken them */
+    hf_generations rows; /* rows.block is NULL before the search, but rows.every is set */
+    int n_journal;       /* generations that only the journal has, until hf_store_restore has taken them */
     bool is_resumed;
     char identity[65];
     double publish_s, published_at_s; /* duration of the last publication, and when it ended */

@@ -124,42 +124,7 @@ hf_status hf_store_read_finished(const char *path, hf_summary *summary, hf_messa
     return status == HF_IO && is_damaged ? hf_store_fail_damaged(path, messages) : status;
 }
 
-hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
-                              hf_messages *messages)
-{
-    *front = (hf_front){.minimised = -1, .knee = -1};
-    *variable = NULL;
-    hf_hdf5 io = hf_store_open_result(path, messages);
-    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/front"))
-        io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.front", path);
-    if (io.status == HF_OK) hf_layout_read_front(&io, front, variable, variable_size);
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) {
-        hf_front_free(front);
-        free(*variable);
-        *variable = NULL;
-    }
-    return io.status;
-}
-
-hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages)
-{
-    *table = (hf_pattern_table){0};
-    hf_hdf5 io = hf_store_open_result(path, messages);
-    if (io.status == HF_OK) hf_layout_read_pattern(&io, (int)stage, table);
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) hf_pattern_table_free(table);
-    return io.status;
-}
-
 /* ---- scene ---- */
-
-static void check_ends(hf_hdf5 *io, hid_t group, const hf_scene *scene)
-{
-    for (int i = 0; i < 2 * scene->n_cable && io->status == HF_OK; i++)
-        if (scene->end[i] < 0 || scene->end[i] >= scene->n_node)
-            hf_hdf5_damaged(io, group, "cable/end", "names a node that is not there");
-}
 
 static bool are_sets_right(const hf_scene *s, int n_member)
 {
@@ -225,12 +190,13 @@ hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *me
     if (io.status == HF_OK)
         hf_hdf5_read_ids(&io, group, "node/id", n_node, scene->node_id, "cable/id", n_cable, scene->cable_id,
                          &scene->text);
-    check_ends(&io, group, scene);
+    for (int i = 0; i < 2 * n_cable && io.status == HF_OK; i++)
+        if (scene->end[i] < 0 || scene->end[i] >= n_node)
+            hf_hdf5_damaged(&io, group, "cable/end", "names a node that is not there");
     read_sets(&io, group, scene);
     read_facets(&io, group, scene);
     hf_hdf5_close(&io, group);
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) hf_scene_free(scene);
+    if (hf_store_close_result(&io) != HF_OK) hf_scene_free(scene);
     return io.status;
 }
 
@@ -268,8 +234,7 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
             hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
                      hf_stage_word[stage]);
     read_shape(&io, hf_stage_group[stage], shape);
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) hf_shape_free(shape);
+    if (hf_store_close_result(&io) != HF_OK) hf_shape_free(shape);
     return io.status;
 }
 
@@ -292,8 +257,7 @@ hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *
     hf_hdf5 io = hf_store_open_result(path, messages);
     *shape = (hf_shape){0};
     if (has_state(&io, name, "position_m", group)) read_shape(&io, group, shape);
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) hf_shape_free(shape);
+    if (hf_store_close_result(&io) != HF_OK) hf_shape_free(shape);
     return io.status;
 }
 
@@ -304,25 +268,6 @@ void hf_shape_free(hf_shape *shape)
 }
 
 /* ---- truss ---- */
-
-hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages)
-{
-    *truss = (hf_truss){0};
-    *state = (hf_carrier_state){0};
-    hf_hdf5 io = hf_store_open_result(path, messages);
-    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss") && io.status == HF_OK)
-        io.status = hf_error(messages, HF_IO, "%s: has no truss: its case has no truss section", path);
-    if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss/node") && io.status == HF_OK)
-        io.status = hf_error(messages, HF_IO,
-                             "%s: is unfinished, and a run stores its truss at the end; resume the run first", path);
-    if (io.status == HF_OK) hf_layout_read_truss(&io, truss, state);
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) {
-        hf_truss_free(truss);
-        hf_carrier_state_free(state);
-    }
-    return io.status;
-}
 
 hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
                                         hf_carrier_state *state, hf_messages *messages)
@@ -336,8 +281,7 @@ hf_status hf_store_read_load_case_truss(const char *path, const char *name, cons
         hf_layout_read_truss_state(&io, id, truss, state);
         hf_hdf5_close(&io, id);
     }
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) hf_carrier_state_free(state);
+    if (hf_store_close_result(&io) != HF_OK) hf_carrier_state_free(state);
     return io.status;
 }
 
@@ -352,13 +296,8 @@ static const char **split_lines(char *text, int *n)
         count += *p == '\n';
     const char **line = calloc(count, sizeof *line);
     *n = 0;
-    for (char *p = text; line && *p;) {
-        char *end = strchr(p, '\n');
+    for (char *rest, *p = line ? strtok_r(text, "\n", &rest) : NULL; p; p = strtok_r(NULL, "\n", &rest))
         line[(*n)++] = p;
-        if (!end) break;
-        *end = '\0';
-        p = end + 1;
-    }
     return line;
 }
 

@@ -52,23 +52,23 @@ static hf_status count_record(void *context, int generation, const void *payload
 #define GENERATIONS_MAX 1000000
 
 /* Reads the sizes of the population, the limit of generations, and which of their individuals the file holds. */
-static void read_sizes(hf_hdf5 *io, int *n_individual, int *n_variable, int *n_objective, int *limit, int *every)
+static void read_sizes(hf_hdf5 *io, hf_generations *g)
 {
-    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_individual", HF_KIND_INT, n_individual, sizeof *n_individual);
-    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_variable", HF_KIND_INT, n_variable, sizeof *n_variable);
-    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "generations_limit", HF_KIND_INT, limit, sizeof *limit);
+    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_individual", HF_KIND_INT, &g->n_individual, sizeof(int));
+    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_variable", HF_KIND_INT, &g->n_variable, sizeof(int));
+    hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "generations_limit", HF_KIND_INT, &g->limit, sizeof(int));
     /* Files of earlier versions do not have this attribute. */
     if (io->status == HF_OK && H5Aexists_by_name(io->file, HF_GENERATIONS_GROUP, "store_every", H5P_DEFAULT) > 0)
-        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "store_every", HF_KIND_INT, every, sizeof *every);
+        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "store_every", HF_KIND_INT, &g->every, sizeof(int));
     /* Only populations of a front have this attribute. */
     if (io->status == HF_OK && H5Aexists_by_name(io->file, HF_GENERATIONS_GROUP, "n_objective", H5P_DEFAULT) > 0)
-        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_objective", HF_KIND_INT, n_objective, sizeof *n_objective);
-    int n_stored = io->status == HF_OK && *n_variable == 0
+        hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP, "n_objective", HF_KIND_INT, &g->n_objective, sizeof(int));
+    int n_stored = io->status == HF_OK && g->n_variable == 0
                        ? 0
                        : hf_hdf5_length(io, io->file, "/variable/group", HF_LAYOUT_COUNT_MAX);
-    if (io->status == HF_OK && (*n_individual < 1 || *n_individual > INDIVIDUALS_MAX || *n_variable != n_stored ||
-                                *n_objective < 0 || *n_objective > HF_FRONT_OBJECTIVES_MAX || *limit < 1 ||
-                                *limit > GENERATIONS_MAX || *every < 0 || *every > GENERATIONS_MAX))
+    if (io->status == HF_OK && (g->n_individual < 1 || g->n_individual > INDIVIDUALS_MAX || g->n_variable != n_stored ||
+                                g->n_objective < 0 || g->n_objective > HF_FRONT_OBJECTIVES_MAX || g->limit < 1 ||
+                                g->limit > GENERATIONS_MAX || g->every < 0 || g->every > GENERATIONS_MAX))
         hf_hdf5_damaged(io, io->file, HF_GENERATIONS_GROUP, "has impossible sizes");
 }
 
@@ -115,7 +115,6 @@ static void read_state(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     signed char finished = 0;
-    int n_individual = 1, n_variable = 0, n_objective = 0, limit = 1, every = 1;
     refuse_other_format(s);
     hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
@@ -127,12 +126,9 @@ static void read_state(hf_store *s)
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
     }
-    read_sizes(io, &n_individual, &n_variable, &n_objective, &limit, &every);
-    bool has_rows = hf_hdf5_has(io, io->file, "/variable/row");
-    if (io->status == HF_OK &&
-        hf_generations_create(n_individual, n_variable, n_objective, limit, every, &s->rows) != HF_OK)
-        io->status = hf_error(io->messages, HF_NO_MEMORY, "%s: out of memory", s->f.out.path);
-    s->rows.has_rows = has_rows;
+    read_sizes(io, &s->rows);
+    s->rows.has_rows = hf_hdf5_has(io, io->file, "/variable/row");
+    if (io->status == HF_OK && hf_generations_create(&s->rows) != HF_OK) hf_hdf5_no_memory(io);
     if (io->status == HF_OK) hf_generations_count(io, &s->rows);
     if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);
 }
@@ -145,8 +141,8 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = true;
-    s->every = 1;                     /* every generation, unless the file says otherwise */
-    s->published_at_s = hf_clock_s(); /* the content so far is visible */
+    s->rows = (hf_generations){.n_individual = 1, .limit = 1, .every = 1}; /* unless the file says otherwise */
+    s->published_at_s = hf_clock_s();                                      /* the content so far is visible */
     hf_store_file_adopt(&s->f);
     hf_store_file_open(&s->f);
     read_state(s);
@@ -234,23 +230,18 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
     s->n_journal = 0;
 }
 
-/* Reads the summary of the search as it was published last. Files of earlier versions have none before the first
- * generation. */
-static void read_known(hf_hdf5 *io, hf_summary *summary)
-{
-    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/search", "solver", H5P_DEFAULT) > 0) {
-        hf_layout_pass_part(io, false, HF_LAYOUT_SEARCH, summary);
-        hf_layout_pass_part(io, false, HF_LAYOUT_SEARCH_STAGE, summary);
-    }
-}
-
 static hf_status restore(hf_store *s, hf_optimiser *optimiser, int drops, hf_summary *summary, hf_messages *messages)
 {
     if (hf_store_generations(s) == 0) return HF_OK;
     hf_hdf5 *io = hf_store_enter(s, messages);
     if (!hf_generations_are_of(&s->rows, &optimiser->population))
         hf_hdf5_damaged(io, io->file, HF_GENERATIONS_GROUP, "has other sizes than the case");
-    read_known(io, summary);
+    /* The summary of the search as it was published last. Files of earlier versions have none before the first
+     * generation. */
+    if (io->status == HF_OK && H5Aexists_by_name(io->file, "/search", "solver", H5P_DEFAULT) > 0) {
+        hf_layout_pass_part(io, false, HF_LAYOUT_SEARCH, summary);
+        hf_layout_pass_part(io, false, HF_LAYOUT_SEARCH_STAGE, summary);
+    }
     if (s->rows.n_stored && io->status == HF_OK) {
         hf_generations_restore(io, &s->rows, &optimiser->population);
         optimiser->is_fresh = false;
@@ -313,7 +304,7 @@ hf_status hf_store_restore_refine(hf_store *s, double *wall_s, size_t *n, const 
 void hf_store_put_refine(hf_store *s, bool finished)
 {
     hf_hdf5 *io = &s->f.io;
-    if (finished || s->refine) hf_layout_renew(io, REFINE_STATE);
+    if (finished || s->refine) hf_layout_renew(io, io->file, REFINE_STATE);
     if (!finished && s->refine)
         hf_hdf5_write_list(io, io->file, REFINE_STATE, HF_KIND_REAL, (int)s->n_refine, 0, "",
                            "where Levenberg-Marquardt was told to stop", s->refine);

@@ -30,36 +30,27 @@ static int list_columns(const hf_montecarlo *t, sample_column of[HF_TOLERANCE_CO
     return n;
 }
 
-/* Copies the values of a column from n rows into real[n]. The column of the status is also copied to whole[n]. */
-static void pick_column(const sample_column *c, int n, const double *row, double *real, int *whole)
-{
-    for (int i = 0; i < n; i++) {
-        real[i] = row[i * HF_TOLERANCE_COLUMNS + c->column];
-        if (c->column == HF_TOLERANCE_STATUS) whole[i] = (int)real[i];
-    }
-}
-
 static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_statistics_rows *rows)
 {
     sample_column column[HF_TOLERANCE_COLUMNS];
-    int n_column = list_columns(t, column), *whole;
-    double *row, *real;
+    int n_column = list_columns(t, column);
+    double *row, *value;
     void *block;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * HF_TOLERANCE_COLUMNS), HF_ARRAY(real, BLOCK),
-                           HF_ARRAY(whole, BLOCK)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * HF_TOLERANCE_COLUMNS), HF_ARRAY(value, BLOCK)));
     const hsize_t chunk[1] = {rows->n < BLOCK ? (hsize_t)rows->n : BLOCK};
     hid_t group = hf_hdf5_make_group(io, "/tolerance/sample");
     for (int k = 0; k < n_column; k++)
-        hf_hdf5_close(io, hf_hdf5_make_array(io, group, &column[k].array, chunk));
+        hf_hdf5_close(io, hf_hdf5_make_array(io, group, &column[k].array, chunk, false));
     hf_status status = io->status;
     for (long first = 0; first < rows->n && status == HF_OK; first += BLOCK) {
         int n = rows->n - first < BLOCK ? (int)(rows->n - first) : BLOCK;
         status = rows->read(rows->context, first, n, row);
         for (int k = 0; k < n_column && status == HF_OK; k++) {
-            pick_column(&column[k], n, row, real, whole);
+            for (int i = 0; i < n; i++)
+                value[i] = row[i * HF_TOLERANCE_COLUMNS + column[k].column];
             column[k].array.dims[0] = (hsize_t)n;
-            hf_hdf5_write_rows(io, group, &column[k].array, (hsize_t)first,
-                               column[k].column == HF_TOLERANCE_STATUS ? (void *)whole : (void *)real);
+            column[k].array.kind = HF_KIND_REAL; /* HDF5 converts the status */
+            hf_hdf5_write_rows(io, group, &column[k].array, (hsize_t)first, value);
             status = io->status;
         }
     }
@@ -97,7 +88,7 @@ hf_status hf_store_tolerance(hf_store *s, const hf_montecarlo *t, const hf_stati
 {
     if (!s) return HF_OK;
     hf_hdf5 *io = hf_store_enter(s, messages);
-    hf_layout_renew(io, "/tolerance");
+    hf_layout_renew(io, io->file, "/tolerance");
     hf_status status = write_first_order(io, t);
     if (status == HF_OK) status = write_samples(io, t, rows);
     if (status == HF_NO_MEMORY) hf_hdf5_no_memory(io);

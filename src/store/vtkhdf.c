@@ -14,20 +14,6 @@
 
 /* ---- cells ---- */
 
-/* Writes the attribute Type. VTK's reader accepts it only as an ASCII string. */
-static void put_type(hf_hdf5 *io, hid_t group)
-{
-    static const char word[] = "UnstructuredGrid";
-    hid_t type = -1, space = -1, attribute = -1;
-    if (io->status != HF_OK) return;
-    if ((type = H5Tcopy(H5T_C_S1)) < 0 || H5Tset_size(type, sizeof word - 1) < 0 ||
-        H5Tset_strpad(type, H5T_STR_NULLPAD) < 0 || (space = H5Screate(H5S_SCALAR)) < 0 ||
-        (attribute = H5Acreate2(group, "Type", type, space, H5P_DEFAULT, H5P_DEFAULT)) < 0 ||
-        H5Awrite(attribute, type, word) < 0)
-        hf_hdf5_fail(io, "write", group, "Type");
-    HF_HDF5_CLOSE(io, attribute, space, type);
-}
-
 /* Makes a group that keeps all its links in its header. The tables that HDF5 makes for more than eight links take 4
  * KiB. */
 static hid_t make_group(hf_hdf5 *io, const char *path)
@@ -52,7 +38,7 @@ void hf_vtkhdf_put_cells(hf_hdf5 *io, const hf_vtkhdf_cells *c)
     const int n_corner = c->offset[c->n_cell];
     hid_t group = make_group(io, "/VTKHDF");
     hf_hdf5_put(io, group, ".", "Version", HF_KIND_LONG, 2, (const long[]){1, 0});
-    put_type(io, group);
+    hf_hdf5_put_ascii(io, group, ".", "Type", "UnstructuredGrid"); /* VTK's reader accepts no other kind of text */
     put_count(io, group, "NumberOfPoints", c->n_point);
     put_count(io, group, "NumberOfCells", c->n_cell);
     put_count(io, group, "NumberOfConnectivityIds", n_corner);
@@ -135,7 +121,7 @@ void hf_vtkhdf_put_result(hf_hdf5 *io, const hf_summary *summary)
     char position[32];
     snprintf(position, sizeof position, "%s/position_m", result);
     if (!hf_hdf5_has(io, io->file, position)) return;
-    hf_layout_renew(io, "/VTKHDF");
+    hf_layout_renew(io, io->file, "/VTKHDF");
     const int n = hf_hdf5_length(io, io->file, "/scene/node/role", HF_LAYOUT_COUNT_MAX);
     const int m = hf_hdf5_length(io, io->file, "/scene/cable/group", HF_LAYOUT_COUNT_MAX);
     int *corner = hf_hdf5_take(io, (size_t)m, 2 * sizeof *corner);

@@ -35,7 +35,9 @@ static void open_run(run *r)
 {
     *r = (run){.settings = small_ga(N_INDIVIDUAL, N_GENERATION + 2)};
     FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &model, initial, &r->optimiser) == HF_OK);
-    FUZZ_REQUIRE(hf_generations_create(N_INDIVIDUAL, N_VARIABLE, 0, r->settings.generations, 1, &r->rows) == HF_OK);
+    r->rows = (hf_generations){
+        .n_individual = N_INDIVIDUAL, .n_variable = N_VARIABLE, .limit = r->settings.generations, .every = 1};
+    FUZZ_REQUIRE(hf_generations_create(&r->rows) == HF_OK);
 }
 
 static void close_run(run *r)

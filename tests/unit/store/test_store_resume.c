@@ -107,13 +107,13 @@ END_TEST
 START_TEST(other_designs_are_told_apart)
 {
     struct run r;
-    hf_generations g;
+    hf_generations g = {.n_individual = N_INDIVIDUAL, .n_variable = N_VARIABLE, .limit = N_GENERATION, .every = 1};
     struct iovec piece[HF_GENERATIONS_PIECES];
     char payload[4096];
     size_t used = 0;
     open_run(&r);
     fill(&r.ga);
-    ck_assert_int_eq(hf_generations_create(N_INDIVIDUAL, N_VARIABLE, 0, N_GENERATION, 1, &g), HF_OK);
+    ck_assert_int_eq(hf_generations_create(&g), HF_OK);
     hf_generations_add(&g, &r.ga.population, piece);
     for (int i = 0; i < HF_GENERATIONS_PIECES; used += piece[i++].iov_len)
         memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
