@@ -88,19 +88,12 @@ hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages
 
 hf_status hf_ledger_close(hf_ledger *l, hf_messages *messages)
 {
-    int failed = 0, why = 0;
-    if (l->rows >= 0) {
-        failed = hf_file_io_sync(l->rows, true);
-        why = errno;
-        if (hf_file_io_close(l->rows) != 0 && !failed) {
-            failed = -1;
-            why = errno;
-        }
-    }
+    int why = l->rows >= 0 && hf_file_io_sync(l->rows, true) != 0 ? errno : 0;
+    if (l->rows >= 0 && hf_file_io_close(l->rows) != 0 && !why) why = errno;
     if (l->claims >= 0) close(l->claims);
     free_news(l->news);
     pthread_mutex_destroy(&l->lock);
-    if (!failed) return HF_OK;
+    if (!why) return HF_OK;
     return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s; the last points may run again", l->folder,
                     strerror(why));
 }

@@ -15,7 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct {
     hf_hdf5 io;
@@ -42,22 +41,16 @@ static void write_texts(merger *m, hid_t group, const char *name, const char *de
 /* Stores the number of a text as item i of m->room. "": there is none. */
 static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *text)
 {
-    switch (kind->class) {
-    case HF_HDF5_REAL:
+    if (kind->class == HF_HDF5_REAL)
         ((double *)room)[i] = *text ? strtod(text, NULL) : (double)NAN;
-        break;
-    case HF_HDF5_LONG:
+    else if (kind->class == HF_HDF5_LONG)
         ((long *)room)[i] = strtol(text, NULL, 10);
-        break;
-    case HF_HDF5_UINT64:
+    else if (kind->class == HF_HDF5_UINT64)
         ((uint64_t *)room)[i] = strtoull(text, NULL, 10);
-        break;
-    case HF_HDF5_INT:
+    else if (kind->class == HF_HDF5_INT)
         ((int *)room)[i] = atoi(text);
-        break;
-    default:
+    else
         ((signed char *)room)[i] = (signed char)(!*text && kind == HF_KIND_STATUS ? (int)HF_NOT_EVALUATED : atoi(text));
-    }
 }
 
 /* ---- inputs ---- */

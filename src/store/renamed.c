@@ -59,7 +59,8 @@ static const struct {
                       {"/tolerance/sample", "tension_min_N", "least_tension_N", NULL},
                       {"/coupling/history", "deflection_max_m", "max_displacement_m", NULL}};
 
-/* Attributes whose own name has changed, by their group of today. Of /search all others had the prefix best_. */
+/* Attributes whose own name has changed, by their group of today. Of /search all others had the prefix best_, except
+ * those of search_table. */
 static const struct {
     const char *group, *now, *then;
 } attribute_table[] = {{"/", "has_search", "has_optimize"},
@@ -74,15 +75,8 @@ static const struct {
                        {"/search", "algorithm_stop", "optimize_stop"},
                        {"/search", "wall_s", "optimize_wall_s"},
                        {"/search", "cpu_s", "optimize_cpu_s"},
-                       {"/search", "solver", "solver"},
-                       {"/search", "n_leader", "n_leader"},
-                       {"/search", "planes", "planes"},
                        {"/search", "best_generation", "best_generation"},
                        {"/search", "best_individual", "best_individual"},
-                       {"/search", "generations", "generations"},
-                       {"/search", "evaluations", "evaluations"},
-                       {"/search", "infeasible", "infeasible"},
-                       {"/search", "store_cpu_s", "store_cpu_s"},
                        {"/search", "coupling_deflection_max_m", "best_coupling_max_displacement_m"},
                        {"/refine", "steps", "polish_iterations"},
                        {"/refine", "algorithm_stop", "polish_stop"},
@@ -100,6 +94,9 @@ static const struct {
                        {"/load_cases/", "member_force_max_N", "largest_member_N"},
                        {"/load_cases/", "coupling_deflection_max_m", "coupling_max_displacement_m"},
                        {"/tolerance", "required_yield", "wanted_yield"}};
+
+static const char *const search_table[] = {"solver",      "n_leader",   "planes",     "generations",
+                                           "evaluations", "infeasible", "store_cpu_s"};
 
 /* Parts of names of figures and measures. */
 static const struct {
@@ -173,8 +170,10 @@ static bool attribute_then(const char *path, const char *now, char *then, size_t
             snprintf(then, size, "%s", attribute_table[i].then);
             return true;
         }
-    bool is_search = !strcmp(path, "/search");
-    snprintf(then, size, "%s%s", is_search ? "best_" : "", now);
+    bool is_of_best = !strcmp(path, "/search");
+    for (int i = 0; i < HF_HDF5_COUNT(search_table); i++)
+        is_of_best &= strcmp(search_table[i], now) != 0;
+    snprintf(then, size, "%s%s", is_of_best ? "best_" : "", now);
     return strcmp(now, "algorithm") != 0;
 }
 

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/file_io.h"
 #include "base/file_out.h"
+#include "base/path.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -65,7 +66,6 @@ hf_status hf_samples_open(const char *result, const char *beside, int task, int 
     s->rows = hf_file_out_scratch(beside);
     if (s->rows < 0) return fail_rows(s, "make", strerror(errno));
     if (!result) return HF_OK;
-    s->has_journal = true;
     HF_TRY(hf_journal_open(s->name, restart, &s->journal, messages));
     if (restart) return hf_journal_restart(&s->journal, identity, messages);
     return hf_journal_replay(&s->journal, identity, take_chunk, s, messages);
@@ -76,20 +76,14 @@ void hf_samples_identify(const char of_case[65], const char of_design[65], char 
     snprintf(identity, 65, "%.*s%.*s", OF_CASE, of_case, 64 - OF_CASE, of_design);
 }
 
-static bool is_of_other_case(const char *name, const char *of_case)
-{
-    char identity[HF_JOURNAL_IDENTITY + 1];
-    bool has_records;
-    return hf_journal_peek(name, identity, &has_records) && has_records && strncmp(identity, of_case, OF_CASE) != 0;
-}
-
 hf_status hf_samples_look(const char *result, int task, int tasks, const char of_case[65], hf_messages *messages)
 {
-    char name[HF_SAMPLES_NAME_SIZE];
+    char name[HF_SAMPLES_NAME_SIZE], identity[HF_JOURNAL_IDENTITY + 1];
+    bool has_records;
     int first = task < 0 ? -1 : task, end = task < 0 ? tasks : task + 1;
     for (int i = first; i < end; i++) {
         name_journal(result, i, i < 0 ? 0 : tasks, name);
-        if (is_of_other_case(name, of_case))
+        if (hf_journal_peek(name, identity, &has_records) && has_records && strncmp(identity, of_case, OF_CASE) != 0)
             return hf_error(messages, HF_EXISTS,
                             "%s: %s.journal has samples of another case; delete it, or restart the run with --restart",
                             result, name);
@@ -126,7 +120,7 @@ hf_status hf_samples_add(hf_samples *s, int chunk, const double *row)
     int n;
     hf_samples_first(s, chunk, &n);
     const struct iovec piece = {(void *)(uintptr_t)row, (size_t)n * ROW_BYTES}; /* the row is only read */
-    if (s->has_journal) {
+    if (s->journal.path) {
         HF_TRY(hf_journal_append(&s->journal, chunk, &piece, 1, s->messages));
         HF_TRY(hf_journal_tend(&s->journal, hf_clock_s(), s->messages));
     }
@@ -147,7 +141,7 @@ void hf_samples_close(hf_samples *s)
 {
     hf_messages *messages = s->messages;
     if (s->n > 0 && s->rows >= 0) close(s->rows);
-    if (s->has_journal) hf_journal_close(&s->journal, false);
+    if (s->journal.path) hf_journal_close(&s->journal, false);
     free(s->has);
     *s = (hf_samples){.messages = messages, .rows = -1};
 }
@@ -163,11 +157,11 @@ static bool is_of_task(const char *name)
 void hf_samples_remove(const char *result)
 {
     char path[HF_SAMPLES_NAME_SIZE], folder[HF_SAMPLES_NAME_SIZE];
-    const char *slash = strrchr(result, '/'), *base = slash ? slash + 1 : result;
+    const char *base = hf_path_name(result);
     size_t n = strlen(base);
     name_journal(result, -1, 0, path);
     remove_journal_of(path);
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - result) + 1 : 1, slash ? result : ".");
+    hf_path_folder(result, folder, sizeof folder);
     DIR *entries = opendir(folder);
     if (!entries) return;
     for (struct dirent *e = readdir(entries); e; e = readdir(entries))

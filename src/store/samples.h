@@ -18,8 +18,7 @@ typedef struct {
     int n_have, n_all;                 /* number of chunks that are there, and of all chunks */
     unsigned char *has;                /* [n_all] 1: the chunk is there; owned */
     int rows;                          /* descriptor of the scratch file; -1: none */
-    bool has_journal;
-    hf_journal journal;
+    hf_journal journal;                /* journal.path NULL: none */
     char name[HF_SAMPLES_NAME_SIZE], identity[HF_JOURNAL_IDENTITY + 1];
     hf_messages *messages;
 } hf_samples;

@@ -18,6 +18,8 @@
 #define FLOW_BYTES (1 << 20)
 #define NAMES_MAX 100 /* names that are tried for a result that cannot get its own */
 
+#define EARLIER ".before-restart"
+
 /* ---- names and checks ---- */
 
 hf_status hf_store_file_check(const char *path, hf_messages *messages)
@@ -41,6 +43,7 @@ hf_status hf_store_file_begin(const char *path, bool replaces, hf_store_file *f,
 {
     *f = (hf_store_file){.journal.file = -1, .io.file = -1, .visible = -1, .out.file = -1, .replaces = replaces};
     HF_TRY(hf_file_out_target(path, f->out.path, messages));
+    snprintf(f->earlier_name, sizeof f->earlier_name, "%s" EARLIER, f->out.path);
     f->io = (hf_hdf5){.path = f->out.path, .messages = messages, .status = HF_OK, .file = -1};
     HF_TRY(hf_store_file_check(f->out.path, messages));
     HF_TRY(hf_journal_open(f->out.path, replaces, &f->journal, messages));
@@ -179,8 +182,6 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
             hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->out.path, why, words, kept);
 }
 
-#define EARLIER ".before-restart"
-
 /* Returns true if `name` is a second name of the earlier result itself. A restart leaves both names if it ended between
  * its two changes of names. */
 static bool is_earlier(const char *name, const char *result)
@@ -191,31 +192,27 @@ static bool is_earlier(const char *name, const char *result)
 
 hf_status hf_store_file_demand_room(hf_store_file *f, hf_messages *messages)
 {
-    char name[HF_FILE_OUT_SIZE + 16];
     struct stat info;
-    snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
     if (f->earlier != HF_EARLIER_THERE && f->earlier != HF_EARLIER_UNREAD) return HF_OK;
-    int seen = hf_path_look_at_link(name, &info);
+    int seen = hf_path_look_at_link(f->earlier_name, &info);
     if (f->earlier == HF_EARLIER_UNREAD && seen >= 0) {
         f->earlier = seen ? HF_EARLIER_NONE : HF_EARLIER_THERE;
         return HF_OK;
     }
-    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot get its status: %s", name, strerror(errno));
-    if (seen == 0 || is_earlier(name, f->out.path)) return HF_OK;
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot get its status: %s", f->earlier_name, strerror(errno));
+    if (seen == 0 || is_earlier(f->earlier_name, f->out.path)) return HF_OK;
     return hf_error(messages, HF_EXISTS,
                     "%s: this name is reserved for the earlier result until the new one is finished; remove the file "
                     "or rename it",
-                    name);
+                    f->earlier_name);
 }
 
 static void keep_earlier(hf_store_file *f)
 {
-    char name[HF_FILE_OUT_SIZE + 16];
-    snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
-    int failed = is_earlier(name, f->out.path) ? 0 : hf_file_out_second_name(f->out.path, name);
+    int failed = is_earlier(f->earlier_name, f->out.path) ? 0 : hf_file_out_second_name(f->out.path, f->earlier_name);
     if (failed && errno != ENOENT) /* another process has removed it */
         f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot keep the earlier result as %s: %s", f->out.path,
-                                name, strerror(errno));
+                                f->earlier_name, strerror(errno));
     f->earlier = failed ? HF_EARLIER_NONE : HF_EARLIER_KEPT;
 }
 
@@ -228,10 +225,9 @@ void hf_store_file_forget_earlier(const char *result)
 
 static void remove_earlier(hf_store_file *f)
 {
-    char name[HF_FILE_OUT_SIZE + 16];
-    snprintf(name, sizeof name, "%s" EARLIER, f->out.path);
-    if (f->earlier == HF_EARLIER_KEPT && unlink(name) != 0 && errno != ENOENT)
-        hf_warning(f->io.messages, "%s: cannot remove the earlier result %s: %s", f->out.path, name, strerror(errno));
+    if (f->earlier == HF_EARLIER_KEPT && unlink(f->earlier_name) != 0 && errno != ENOENT)
+        hf_warning(f->io.messages, "%s: cannot remove the earlier result %s: %s", f->out.path, f->earlier_name,
+                   strerror(errno));
     f->earlier = HF_EARLIER_NONE;
 }
 
@@ -268,8 +264,7 @@ void hf_store_file_end(hf_store_file *f, hf_messages *messages)
     f->io.messages = NULL;
     hf_store_file_close(f);
     if (f->earlier == HF_EARLIER_KEPT && messages)
-        hf_warning(messages, "%s: the earlier result is %s" EARLIER " until this one is finished", f->out.path,
-                   f->out.path);
+        hf_warning(messages, "%s: the earlier result is %s until this one is finished", f->out.path, f->earlier_name);
     hf_file_out_drop(&f->out, messages); /* before the lock is released */
     bool is_needless = f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new;
     hf_journal_close(&f->journal, is_needless && !f->out.is_left);

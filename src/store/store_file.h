@@ -41,11 +41,12 @@ typedef struct {
     hf_journal journal;
     bool replaces; /* a file of another run with this name may be replaced */
     hf_earlier earlier;
-    bool is_published; /* the visible file is that of this run */
-    struct stat ours;  /* identity of that file */
-    int visible;       /* descriptor of that file, for copies even if its name is taken; or -1 */
-    hf_file_out out;   /* out.path is RESULT, out.file the temporary file */
-    int64_t flowing;   /* bytes of the temporary file that the system was asked to write to the disk */
+    char earlier_name[HF_FILE_OUT_SIZE + 16]; /* RESULT.before-restart */
+    bool is_published;                        /* the visible file is that of this run */
+    struct stat ours;                         /* identity of that file */
+    int visible;                              /* descriptor of that file, for copies even if its name is taken; or -1 */
+    hf_file_out out;                          /* out.path is RESULT, out.file the temporary file */
+    int64_t flowing; /* bytes of the temporary file that the system was asked to write to the disk */
 } hf_store_file;
 
 /* Checks that a file of this name can be made, or that the ordinary file there can be replaced. It is called before the

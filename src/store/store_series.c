@@ -8,8 +8,8 @@
 #include <string.h>
 
 #define NAMES_MAX 1000 /* names in a group; more than there are keys, and so more than a study has axes */
-#define LONGER 16      /* bytes by which a name may be longer than that of version 0.2 */
-#define FILE_MAX 1024  /* bytes of the file name of a link; a longer name becomes "", and a page shows no link */
+#define FILE_MAX                                                                                                       \
+    1024 /* bytes of the name of a link, and of the file name in it; a longer name becomes "", and a page shows no link */
 
 /* ---- numbers ---- */
 
@@ -46,8 +46,7 @@ hf_status hf_store_read_series(const char *path, const char *name, int columns, 
     hf_hdf5 io = hf_store_open_result(path, messages);
     *series = (hf_series){0};
     if (hf_hdf5_has(&io, io.file, name)) read_series(&io, name, columns, series);
-    hf_store_close_result(&io);
-    if (io.status != HF_OK) hf_series_free(series);
+    if (hf_store_close_result(&io) != HF_OK) hf_series_free(series);
     return io.status;
 }
 
@@ -77,13 +76,6 @@ static bool allocate(hf_hdf5 *io, int n, size_t length, hf_texts *texts)
     char *text = hf_hdf5_take(io, (size_t)n, length);
     if (text) *texts = (hf_texts){n, length, text};
     return text != NULL;
-}
-
-static hf_status finish(hf_hdf5 *io, hf_texts *texts)
-{
-    hf_store_close_result(io);
-    if (io->status != HF_OK) hf_texts_free(texts);
-    return io->status;
 }
 
 #define DIGITS_SIZE 24 /* bytes for 64 bits in decimal digits and the NUL; a multiple of 8 */
@@ -128,7 +120,8 @@ hf_status hf_store_read_texts(const char *path, const char *name, hf_texts *text
     hf_hdf5 io = hf_store_open_result(path, messages);
     *texts = (hf_texts){0};
     if (hf_hdf5_has(&io, io.file, name)) read_texts(&io, name, texts);
-    return finish(&io, texts);
+    if (hf_store_close_result(&io) != HF_OK) hf_texts_free(texts);
+    return io.status;
 }
 
 /* ---- names ---- */
@@ -141,25 +134,20 @@ static int by_text(const void *a, const void *b)
 static void read_names(hf_hdf5 *io, const char *name, hid_t group, hf_texts *names)
 {
     H5G_info_t info;
-    size_t longest = 0;
     if (H5Gget_info(group, &info) < 0) {
         hf_hdf5_fail(io, "read", io->file, name);
         return;
     }
     if (info.nlinks == 0) return;
     if (info.nlinks > NAMES_MAX) hf_hdf5_damaged(io, io->file, name, "holds too many names");
-    for (hsize_t i = 0; i < info.nlinks && io->status == HF_OK; i++) {
-        ssize_t used = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, NULL, 0, H5P_DEFAULT);
-        if (used < 0) hf_hdf5_fail(io, "read", io->file, name);
-        if (used >= FILE_MAX) hf_hdf5_damaged(io, io->file, name, "holds a name that is too long");
-        if (used > 0 && (size_t)used > longest) longest = (size_t)used;
-    }
-    if (!allocate(io, (int)info.nlinks, longest + LONGER + 1, names)) return;
+    if (!allocate(io, (int)info.nlinks, FILE_MAX, names)) return;
     names->n = 0;
-    for (hsize_t i = 0; i < info.nlinks; i++) {
+    for (hsize_t i = 0; i < info.nlinks && io->status == HF_OK; i++) {
         char *to = names->text + (size_t)names->n * names->length;
         H5L_info_t link;
-        H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, to, names->length, H5P_DEFAULT);
+        ssize_t used = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, to, FILE_MAX, H5P_DEFAULT);
+        if (used < 0) hf_hdf5_fail(io, "read", io->file, name);
+        if (used >= FILE_MAX) hf_hdf5_damaged(io, io->file, name, "holds a name that is too long");
         /* Soft links are old names of other objects. */
         names->n += H5Lget_info_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, &link, H5P_DEFAULT) >= 0 &&
                     link.type != H5L_TYPE_SOFT;
@@ -183,7 +171,8 @@ hf_status hf_store_read_names(const char *path, const char *group, hf_texts *nam
         if (io.status == HF_OK) read_names(&io, group, id, names);
         hf_hdf5_close(&io, id);
     }
-    return finish(&io, names);
+    if (hf_store_close_result(&io) != HF_OK) hf_texts_free(names);
+    return io.status;
 }
 
 /* ---- links ---- */
@@ -219,5 +208,6 @@ hf_status hf_store_read_links(const char *path, const char *group, const hf_text
             read_link(&io, id, hf_texts_at(names, i), files->text + (size_t)i * files->length);
         hf_hdf5_close(&io, id);
     }
-    return finish(&io, files);
+    if (hf_store_close_result(&io) != HF_OK) hf_texts_free(files);
+    return io.status;
 }

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 const char *const hf_stage_word[HF_N_STAGE + 1] = {"form", "search", "refine", "none"};
 
@@ -177,13 +176,6 @@ static void write_objectives(const hf_summary *s, const hf_form_result *r, hf_js
     hf_json_close(j, '}');
 }
 
-static void write_truss(const hf_summary *s, hf_json *j)
-{
-    open_line(j, " ", "truss", '{');
-    write_part(s, HF_LAYOUT_TRUSS, j);
-    hf_json_close(j, '}');
-}
-
 /* Writes a stage: its result, what only this stage has, and the measures of its shape. */
 static void write_stage(const hf_summary *s, hf_stage stage, hf_json *j)
 {
@@ -206,13 +198,6 @@ static void write_stage(const hf_summary *s, hf_stage stage, hf_json *j)
     write_sets(of->sets, j);
     write_held(of->held, j);
     write_objectives(s, &of->result, j);
-    hf_json_close(j, '}');
-}
-
-static void write_coupling(const hf_coupling_result *r, hf_json *j)
-{
-    open_line(j, " ", "coupling", '{');
-    write_fields(hf_coupling_field_of, HF_COUPLING_N, 1, LAST_PLACE, r, j);
     hf_json_close(j, '}');
 }
 
@@ -343,9 +328,17 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     hf_json writer = {.file = f}, *j = &writer;
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "status", hf_status_word(status));
-    if (s->has_truss) write_truss(s, j);
+    if (s->has_truss) {
+        open_line(j, " ", "truss", '{');
+        write_part(s, HF_LAYOUT_TRUSS, j);
+        hf_json_close(j, '}');
+    }
     if (s->stage[HF_STAGE_FORM].exists) write_stage(s, HF_STAGE_FORM, j);
-    if (s->has_coupling && form->coupling.iterations > 0) write_coupling(&form->coupling, j);
+    if (s->has_coupling && form->coupling.iterations > 0) {
+        open_line(j, " ", "coupling", '{');
+        write_part(s, HF_LAYOUT_FORM_COUPLING, j);
+        hf_json_close(j, '}');
+    }
     for (hf_stage stage = HF_STAGE_SEARCH; stage < HF_N_STAGE; stage++)
         if (s->stage[stage].exists) write_stage(s, stage, j);
     if (s->front) write_front(s, j);
