@@ -183,8 +183,8 @@ void hf_hdf5_walk(hf_hdf5 *io, hf_hdf5_visit *visit, void *context);
 /* ---- Data sets ---- */
 
 /* hf_hdf5_make_array makes a data set with its attributes and returns its id, which the caller closes. chunk: NULL, or
- * [rank] for a data set that grows along its first dimension; it has no rows at first. packs: as in hf_hdf5_write_packed. hf_hdf5_write_array makes a data
- * set of fixed size and writes all its values. */
+ * [rank] for a data set that grows along its first dimension; it has no rows at first. packs: as in
+ * hf_hdf5_write_packed. hf_hdf5_write_array makes a data set of fixed size and writes all its values. */
 hid_t hf_hdf5_make_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const hsize_t *chunk, bool packs);
 void hf_hdf5_write_array(hf_hdf5 *io, hid_t group, const hf_hdf5_array *array, const void *values);
 

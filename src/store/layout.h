@@ -37,8 +37,8 @@ const hf_hdf5_kind *hf_layout_kind_of(const hf_result_field *field);
 
 /* ---- Columns: pointers in structs and their data sets ---- */
 
-/* One column of a list that ends with {0}: a pointer in a struct and its data set [n_node] or [n_cable]. With columns > 1 the data set is
- * [n_node][columns] or [n_cable][columns]. */
+/* One column of a list that ends with {0}: a pointer in a struct and its data set [n_node] or [n_cable]. With columns >
+ * 1 the data set is [n_node][columns] or [n_cable][columns]. */
 typedef struct {
     const char *name;
     const hf_hdf5_kind *kind;
@@ -63,8 +63,8 @@ extern const hf_layout_column hf_layout_truss_state[]; /* hf_carrier_state in /t
 void hf_layout_pass_columns(hf_hdf5 *io, bool writes, hid_t group, const hf_layout_column *columns, int n_node,
                             int n_cable, const void *owner);
 
-/* Removes the object `name` below `place` if it exists, so that it can be written again. A resumed run needs this if an earlier
- * session has written the object. */
+/* Removes the object `name` below `place` if it exists, so that it can be written again. A resumed run needs this if an
+ * earlier session has written the object. */
 void hf_layout_renew(hf_hdf5 *io, hid_t place, const char *name);
 
 /* ---- Fields: members of structs and their data sets ---- */
@@ -195,8 +195,8 @@ void hf_layout_pass_taken(hf_hdf5 *io, bool writes, const hf_front_origin *taken
 void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary);
 
-/* layout_truss: hf_store_truss, hf_store_read_truss, and the parts of a truss in a load case. hf_layout_make_truss makes
- * the group `path` of a truss with its groups node and member, and returns it. */
+/* layout_truss: hf_store_truss, hf_store_read_truss, and the parts of a truss in a load case. hf_layout_make_truss
+ * makes the group `path` of a truss with its groups node and member, and returns it. */
 hid_t hf_layout_make_truss(hf_hdf5 *io, const char *path);
 
 /* Reads the displacements and forces alone, from the group `group`. If it has none, *state does not change. */

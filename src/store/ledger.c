@@ -303,8 +303,8 @@ static hf_status tell_in_the_way(const char *path, hf_messages *messages)
     return hf_error(messages, HF_IO, "%s: is a folder or another special file; remove it", path);
 }
 
-/* Reads what the file holds now, from byte `at` on, as a text, which the caller frees. Rows that are added meanwhile are
- * left out. */
+/* Reads what the file holds now, from byte `at` on, as a text, which the caller frees. Rows that are added meanwhile
+ * are left out. */
 static hf_status read_text(const char *path, off_t at, char **text, hf_messages *messages)
 {
     off_t size;

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #define NAMES_MAX 1000 /* names in a group; more than there are keys, and so more than a study has axes */
-#define FILE_MAX                                                                                                       \
-    1024 /* bytes of the name of a link, and of the file name in it; a longer name becomes "", and a page shows no link */
+/* Bytes of the name of a link, and of the file name in it. A longer file name becomes "", and a page shows no link. */
+#define FILE_MAX 1024
 
 /* ---- numbers ---- */
 
