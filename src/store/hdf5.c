@@ -141,11 +141,6 @@ static signed char value_at(const hf_hdf5_kind *kind, int i)
     return kind->value ? kind->value[i] : (signed char)i;
 }
 
-static bool is_enum(const hf_hdf5_kind *kind)
-{
-    return kind->class == HF_HDF5_ENUM;
-}
-
 size_t hf_hdf5_kind_bytes(const hf_hdf5_kind *kind)
 {
     static const size_t bytes[] = {
@@ -177,7 +172,7 @@ static hid_t make_string(size_t length, H5T_cset_t characters)
 static hid_t make_type(const hf_hdf5_kind *kind, hsize_t length)
 {
     const hid_t number[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT, H5T_NATIVE_LONG, H5T_NATIVE_UINT64, H5T_NATIVE_UCHAR};
-    if (is_enum(kind)) return make_enum(kind);
+    if (kind->class == HF_HDF5_ENUM) return make_enum(kind);
     if (kind->class <= HF_HDF5_BYTE) return H5Tcopy(number[kind->class]);
     return make_string(kind->class == HF_HDF5_TEXT ? H5T_VARIABLE : (size_t)length, H5T_CSET_UTF8);
 }
@@ -191,14 +186,14 @@ static hid_t array_type(const hf_hdf5_array *a)
  * their words may be those of another version. */
 static hid_t make_read_type(const hf_hdf5_kind *kind, hsize_t length)
 {
-    return is_enum(kind) ? H5Tcopy(H5T_NATIVE_SCHAR) : make_type(kind, length);
+    return kind->class == HF_HDF5_ENUM ? H5Tcopy(H5T_NATIVE_SCHAR) : make_type(kind, length);
 }
 
 /* Returns true if values of this stored type can be read as `kind`. */
 static bool is_of_kind(hid_t stored, const hf_hdf5_kind *kind)
 {
     H5T_class_t class = H5Tget_class(stored);
-    if (is_enum(kind)) return class == H5T_ENUM && H5Tget_size(stored) == 1;
+    if (kind->class == HF_HDF5_ENUM) return class == H5T_ENUM && H5Tget_size(stored) == 1;
     if (kind == HF_KIND_CHARS) return class == H5T_STRING && H5Tis_variable_str(stored) == 0;
     assert(kind != HF_KIND_TEXT);
     return class == (kind == HF_KIND_REAL ? H5T_FLOAT : H5T_INTEGER);
@@ -487,7 +482,7 @@ static void read_values(hf_hdf5 *io, hid_t group, const hf_hdf5_array *a, bool a
                                 (!all && (memory = select_rows(a, row, d.space)) < 0) ||
                                 H5Dread(d.id, type, memory, all ? H5S_ALL : d.space, H5P_DEFAULT, values) < 0))
         hf_hdf5_fail(io, "read", group, a->name);
-    if (io->status == HF_OK && is_enum(a->kind) && !hf_hdf5_are_known(a->kind, values, n))
+    if (io->status == HF_OK && a->kind->class == HF_HDF5_ENUM && !hf_hdf5_are_known(a->kind, values, n))
         hf_hdf5_damaged(io, group, a->name, "holds a value that has no word");
     if (memory != H5S_ALL) hf_hdf5_close(io, memory);
     hf_hdf5_close(io, type);
@@ -709,7 +704,7 @@ void hf_hdf5_get(hf_hdf5 *io, hid_t place, const char *name, const char *attribu
         fail_at(io, "read", place, name, attribute);
     else if (kind == HF_KIND_CHARS)
         ((char *)value)[length] = '\0';
-    else if (is_enum(kind) && !hf_hdf5_are_known(kind, value, 1))
+    else if (kind->class == HF_HDF5_ENUM && !hf_hdf5_are_known(kind, value, 1))
         damaged_at(io, place, name, attribute, "holds a value that has no word");
     HF_HDF5_CLOSE(io, type, space, stored, id);
 }

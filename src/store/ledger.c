@@ -61,14 +61,6 @@ struct hf_ledger_news {
     bool *is_finished; /* [n_point] */
 };
 
-static void free_news(struct hf_ledger_news *news)
-{
-    if (!news) return;
-    free(news->file);
-    free(news->is_finished);
-    free(news);
-}
-
 hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages)
 {
     char path[HF_PATH_SIZE + 32];
@@ -91,7 +83,11 @@ hf_status hf_ledger_close(hf_ledger *l, hf_messages *messages)
     int why = l->rows >= 0 && hf_file_io_sync(l->rows, true) != 0 ? errno : 0;
     if (l->rows >= 0 && hf_file_io_close(l->rows) != 0 && !why) why = errno;
     if (l->claims >= 0) close(l->claims);
-    free_news(l->news);
+    if (l->news) {
+        free(l->news->file);
+        free(l->news->is_finished);
+    }
+    free(l->news);
     pthread_mutex_destroy(&l->lock);
     if (!why) return HF_OK;
     return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s; the last points may run again", l->folder,
