@@ -14,7 +14,7 @@ struct run {
     hf_optimize_settings settings;
     hf_optimiser ga;
     double initial[N_VARIABLE];
-    int variable[N_VARIABLE];
+    int variable[N_VARIABLE], leader[N_VARIABLE];
 };
 
 static inline void open_run(struct run *r)
@@ -23,8 +23,14 @@ static inline void open_run(struct run *r)
     open_bow(&r->net);
     find_shape(&r->net);
     r->settings = small_ga(N_INDIVIDUAL, N_GENERATION);
-    r->model = (hf_model){
-        .n_variable = N_VARIABLE, .n_variable_group = 1, .variable_cable = r->variable, .variable_group = r->variable};
+    for (int k = 0; k < N_VARIABLE; k++)
+        r->leader[k] = k;
+    r->model = (hf_model){.n_variable = N_VARIABLE,
+                          .n_variable_group = 1,
+                          .variable_cable = r->variable,
+                          .variable_group = r->variable,
+                          .variable_leader = r->leader,
+                          .n_leader = N_VARIABLE};
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &r->model, r->initial, &r->ga), HF_OK);
 }
 

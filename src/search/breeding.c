@@ -16,20 +16,6 @@
  * distributed. The proposed designs depend on this value. The test test_optimiser_ga passes with 5 and with 48. */
 #define MUTATION_OCTAVES 16
 
-/* Returns true if the gene follows no other gene. */
-static bool leads(const hf_breeding *g, int k)
-{
-    const hf_model *m = g->model;
-    return m->n_leader >= m->n_variable || !m->variable_leader || m->variable_leader[k] == k;
-}
-
-/* Returns the number of genes that follow no other gene. */
-static int n_leader(const hf_breeding *g)
-{
-    const hf_model *m = g->model;
-    return m->n_leader < m->n_variable && m->variable_leader ? m->n_leader : m->n_variable;
-}
-
 double *hf_breeding_draws(const hf_breeding *g, int i)
 {
     return g->draw + (size_t)i * (size_t)g->model->n_variable_group;
@@ -86,11 +72,11 @@ void hf_breeding_mutate(const hf_breeding *g, const hf_population *p, double rat
                         hf_random *random)
 {
     double *draw = hf_breeding_draws(g, i);
-    single /= n_leader(g);
+    single /= g->model->n_leader;
     for (int j = 0; j < g->model->n_variable_group; j++)
         draw[j] = mutation_step(rate, random);
     for (int k = 0; k < p->n_variable; k++) {
-        if (!leads(g, k)) continue;
+        if (g->model->variable_leader[k] != k) continue;
         double step = draw[g->model->variable_group[k]] + mutation_step(single, random);
         child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper[k] - p->lower[k]));
     }

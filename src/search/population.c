@@ -54,11 +54,6 @@ static hf_status allocate(hf_population *p, hf_population *next)
 
 /* ---- linked design variables ---- */
 
-static bool has_links(const hf_model *m)
-{
-    return m->n_leader < m->n_variable && m->variable_leader;
-}
-
 /* Restricts the bounds of a class of linked design variables to the steps that all of its members can take. If there is
  * no such step, each member keeps its own bounds, to which hf_population_link clamps it. */
 static void link_bounds(const hf_model *m, hf_population *p)
@@ -82,7 +77,7 @@ static void link_bounds(const hf_model *m, hf_population *p)
 
 void hf_population_link(const hf_population *population, const hf_model *m, double *design)
 {
-    if (!has_links(m)) return;
+    if (m->n_leader == m->n_variable) return;
     hf_symmetry_follow(population->n_variable, m->variable_leader, population->initial, design);
     for (int k = 0; k < population->n_variable; k++)
         design[k] = hf_population_clamp(population, k, design[k]);
@@ -103,7 +98,7 @@ hf_status hf_population_create(const hf_optimize_settings *s, const hf_model *m,
     memcpy(p->initial, initial, (size_t)p->n_variable * sizeof *initial);
     for (int k = 0; k < p->n_variable; k++)
         hf_variables_bound(s, m, k, initial[k], &p->lower[k], &p->upper[k], &p->reach[k]);
-    if (has_links(m)) link_bounds(m, p);
+    if (m->n_leader < m->n_variable) link_bounds(m, p);
     return HF_OK;
 }
 

@@ -19,10 +19,14 @@
 
 enum { N_GENERATION = 4, N_INDIVIDUAL = 3, N_VARIABLE = 2, HEADER_BYTES = 8 + HF_JOURNAL_IDENTITY, HEAD_BYTES = 16 };
 
-static int variable[N_VARIABLE];
+static int variable[N_VARIABLE], leader[N_VARIABLE] = {0, 1};
 static double initial[N_VARIABLE] = {10, 12};
-static const hf_model model = {
-    .n_variable = N_VARIABLE, .n_variable_group = 1, .variable_cable = variable, .variable_group = variable};
+static const hf_model model = {.n_variable = N_VARIABLE,
+                               .n_variable_group = 1,
+                               .variable_cable = variable,
+                               .variable_group = variable,
+                               .variable_leader = leader,
+                               .n_leader = N_VARIABLE};
 
 typedef struct {
     hf_optimize_settings settings; /* of the optimiser, which borrows them */

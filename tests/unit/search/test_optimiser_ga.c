@@ -10,7 +10,12 @@
 enum { N_VARIABLE = 6, N_GROUP = 3, N = 20 };
 
 static int group_of[N_VARIABLE] = {0, 0, 1, 1, 2, 2};
-static const hf_model model = {.n_variable = N_VARIABLE, .n_variable_group = N_GROUP, .variable_group = group_of};
+static int leader_of[N_VARIABLE] = {0, 1, 2, 3, 4, 5};
+static const hf_model model = {.n_variable = N_VARIABLE,
+                               .n_variable_group = N_GROUP,
+                               .variable_group = group_of,
+                               .variable_leader = leader_of,
+                               .n_leader = N_VARIABLE};
 static const double initial[N_VARIABLE] = {10, 12, 14, 0.4, 20, 29.7};
 
 /* METHOD section 7; bounds that cut the ranges of the genes 3 (0.4 - 1 is below 0.1) and 5 (29.7 + 1 is above 30). */

@@ -11,9 +11,12 @@
 enum { N_VARIABLE = 6, N_GROUP = 3, N = 40 };
 
 static int group_of[N_VARIABLE] = {0, 0, 1, 1, 2, 2};
-static int leader_of[N_VARIABLE] = {0, 1, 2, 3, 0, 5};
-static const hf_model free_variables = {
-    .n_variable = N_VARIABLE, .n_variable_group = N_GROUP, .variable_group = group_of};
+static int itself[N_VARIABLE] = {0, 1, 2, 3, 4, 5}, leader_of[N_VARIABLE] = {0, 1, 2, 3, 0, 5};
+static const hf_model free_variables = {.n_variable = N_VARIABLE,
+                                        .n_variable_group = N_GROUP,
+                                        .variable_group = group_of,
+                                        .variable_leader = itself,
+                                        .n_leader = N_VARIABLE};
 static const hf_model linked_genes = {.n_variable = N_VARIABLE,
                                       .n_variable_group = N_GROUP,
                                       .variable_group = group_of,

@@ -447,13 +447,19 @@ START_TEST(generations_are_appended)
     hf_optimize_settings settings = small_ga(p, 5);
     open_bow(&net);
     double *initial = malloc(((size_t)k + 1) * sizeof *initial);
-    int *variable = malloc((2 * (size_t)k + 1) * sizeof *variable), *group = variable + k;
+    int *variable = malloc((3 * (size_t)k + 1) * sizeof *variable), *group = variable + k, *leader = group + k;
     for (int i = 0; i < k; i++) {
         initial[i] = i + 1;
         variable[i] = 2 * i;
         group[i] = i / 2;
+        leader[i] = i;
     }
-    hf_model m = {.n_variable = k, .n_variable_group = k, .variable_cable = variable, .variable_group = group};
+    hf_model m = {.n_variable = k,
+                  .n_variable_group = k,
+                  .variable_cable = variable,
+                  .variable_group = group,
+                  .variable_leader = leader,
+                  .n_leader = k};
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, initial, &ga), HF_OK);
     hf_store *store = begin(temp_path("a.h5"), 1, &net.scene);
     for (int g = 0; g < 5; g++) {

@@ -288,8 +288,15 @@ START_TEST(a_full_disk_is_told)
     open_bow(&net);
     hf_optimize_settings settings = small_ga(50, 40);
     double initial[40] = {0};
-    int variable[40] = {0};
-    hf_model m = {.n_variable = 40, .n_variable_group = 1, .variable_cable = variable, .variable_group = variable};
+    int variable[40] = {0}, leader[40];
+    for (int k = 0; k < 40; k++)
+        leader[k] = k;
+    hf_model m = {.n_variable = 40,
+                  .n_variable_group = 1,
+                  .variable_cable = variable,
+                  .variable_group = variable,
+                  .variable_leader = leader,
+                  .n_leader = 40};
     hf_optimiser ga;
     ck_assert_int_eq(hf_optimiser_create(&hf_optimiser_ga, &settings, &m, initial, &ga), HF_OK);
 
