@@ -38,7 +38,7 @@ static inline void make_built(const struct net *net, hf_built *built, hf_workspa
     ck_assert_msg(hf_built_make("x.yaml", &net->scene, &net->model, &net->form, &net->work, built, &messages) == HF_OK,
                   "%s", messages.text);
     ck_assert_int_eq(hf_workspace_create(&built->model, w), HF_OK);
-    hf_workspace_poison(&built->model, w);
+    poison_workspace(&built->model, w);
 }
 
 /* Errors of samples, uniform between minus and plus these values. Each sample has its own stream of random numbers. */

@@ -67,7 +67,7 @@ static inline void attach_all_to(struct net *net, struct rng *rng, int kind, dou
     free(f);
     hf_workspace_free(&net->work);
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
-    hf_workspace_poison(&net->model, &net->work);
+    poison_workspace(&net->model, &net->work);
 }
 
 static inline void attach_all(struct net *net, struct rng *rng, double scale_m_per_N)

@@ -2,6 +2,7 @@
  * these functions and none needs all. Sections: opening and closing, nets by hand, nets from a case. */
 #pragma once
 
+#include "poison.h"
 #include "support.h"
 #include "valid.h"
 
@@ -46,7 +47,7 @@ static inline void open_net(struct net *net)
     ck_assert_msg(hf_model_build(&net->scene, &net->form, &net->model, &messages) == HF_OK, "%s", messages.text);
     ck_assert(model_is_valid(&net->model));
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
-    hf_workspace_poison(&net->model, &net->work);
+    poison_workspace(&net->model, &net->work);
 }
 
 static inline void close_net(struct net *net)

@@ -30,7 +30,7 @@ static inline void make_twin(twin *t)
     ck_assert_int_lt(t->net.model.n_cable, TWIN_CABLES);
     ck_assert_int_lt(3 * t->net.model.n_node, TWIN_DOFS);
     ck_assert_int_eq(hf_workspace_create(&t->built.model, &t->work), HF_OK);
-    hf_workspace_poison(&t->built.model, &t->work);
+    poison_workspace(&t->built.model, &t->work);
     t->prior = (hf_saddle_prior){.sigma_m = t->sigma_m, .weight_per_m2 = t->weight_per_m2};
 }
 

@@ -137,8 +137,4 @@ void hf_workspace_free(hf_workspace *workspace);
  * (Eqs. 7, 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
-/* Sets every floating-point field to NaN and every byte of the other fields to 0xff. This function is for tests. If a
- * call reads stale contents, its result shows this. */
-void hf_workspace_poison(const hf_model *model, hf_workspace *workspace);
-
 HF_API_END

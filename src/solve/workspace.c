@@ -4,8 +4,6 @@
 #include "base/arena.h"
 #include "linalg/lapack.h"
 
-#include <string.h>
-
 static void lay_out(hf_arena *arena, const hf_model *m, hf_workspace *to){HF_WORKSPACE_FIELDS(HF_ARENA_TAKE)}
 
 size_t hf_workspace_bytes(const hf_model *m)
@@ -38,12 +36,4 @@ bool hf_workspace_iterates(const hf_model *m, const hf_workspace *w)
     for (int e = 0; e < m->n_cable; e++)
         if (hf_law_has(w->law[e], HF_LAW_ITERATES)) return true;
     return false;
-}
-
-void hf_workspace_poison(const hf_model *m, hf_workspace *w)
-{
-/* In IEEE 754 all bits set are a NaN; in an integer they are an index or a law that no check accepts. */
-#define POISON(type, name, count, unit, meaning) memset(w->name, 0xff, (size_t)(count) * sizeof(type));
-    HF_WORKSPACE_FIELDS(POISON)
-#undef POISON
 }

@@ -25,7 +25,7 @@ static void build_design(struct built_net *b)
                       HF_OK,
                   "%s", messages.text);
     ck_assert_int_eq(hf_workspace_create(&b->built.model, &b->work), HF_OK);
-    hf_workspace_poison(&b->built.model, &b->work);
+    poison_workspace(&b->built.model, &b->work);
     ck_assert_int_eq(hf_load_cases_allocate(&net->scene, 0, 1, &b->load_cases), HF_OK);
     ck_assert_int_eq(hf_material_allocate(&net->scene, &b->load_cases.material), HF_OK);
     b->load_case = b->load_cases.load_case;

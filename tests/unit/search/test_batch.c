@@ -22,7 +22,7 @@ static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result 
     memset(result, 0, N_DESIGN * sizeof *result); /* padding included: results are compared as bytes */
     ck_assert_int_eq(hf_batch_create(&r->evaluator, n_thread, &batch), HF_OK);
     for (int i = 0; i < batch.n_thread; i++)
-        hf_workspace_poison(&r->net.model, &batch.workspace[i]);
+        poison_workspace(&r->net.model, &batch.workspace[i]);
     for (int i = 0; i < N_DESIGN; i += n_at_once)
         hf_batch_run(&batch, i + n_at_once < N_DESIGN ? n_at_once : N_DESIGN - i,
                      r->design + i * r->net.model.n_variable, NULL, result + i);

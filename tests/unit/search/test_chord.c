@@ -20,7 +20,7 @@ static void evaluate(struct run *r, int n_thread, int n_at_once, hf_form_result 
     ck_assert_int_eq(hf_batch_create(&r->evaluator, n_thread, &batch), HF_OK);
     ck_assert_int_eq(hf_batch_share(&batch, r->initial), HF_SOLVER_CHORD);
     for (int i = 0; i < batch.n_thread; i++)
-        hf_workspace_poison(&r->net.model, &batch.workspace[i]);
+        poison_workspace(&r->net.model, &batch.workspace[i]);
     for (int i = 0; i < N_DESIGN; i += n_at_once)
         hf_batch_run(&batch, N_DESIGN - i < n_at_once ? N_DESIGN - i : n_at_once, design(r, i), NULL, result + i);
     hf_batch_free(&batch);

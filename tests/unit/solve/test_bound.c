@@ -189,7 +189,7 @@ static void attach(struct net *net, int n_attachment, const double *flexibility)
     ck_assert_int_eq(hf_model_attach(&net->model, n_attachment, node, flexibility, &messages), HF_OK);
     hf_workspace_free(&net->work);
     ck_assert_int_eq(hf_workspace_create(&net->model, &net->work), HF_OK);
-    hf_workspace_poison(&net->model, &net->work);
+    poison_workspace(&net->model, &net->work);
     net->form.coupling = (hf_coupling_settings){1e-12, HF_COUPLING_AUTO, 500};
 }
 

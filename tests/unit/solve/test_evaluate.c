@@ -187,7 +187,7 @@ START_TEST(stale_workspace_gives_the_same_bits)
     hf_form_result first, second;
     open_design(&r, _i);
     disturb(&r, 0.01);
-    hf_workspace_poison(&r.net.model, &r.net.work);
+    poison_workspace(&r.net.model, &r.net.work);
     evaluate(&r, &first);
     size_t bytes = 3 * (size_t)r.net.model.n_node * sizeof(double);
     double *shape = malloc(bytes), kept = r.design[0];

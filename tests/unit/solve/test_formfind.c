@@ -247,7 +247,7 @@ START_TEST(the_parts_are_the_iteration)
     ck_assert_int_eq(find_shape(&net), HF_NOT_CONVERGED);
     memcpy(whole_m, net.work.position_m, sizeof whole_m);
     memcpy(whole_q, net.work.q_N_per_m, sizeof whole_q);
-    hf_workspace_poison(&net.model, &net.work);
+    poison_workspace(&net.model, &net.work);
     hf_form_prepare(&net.model, &net.work);
     memcpy(net.work.position_m, net.model.position_m, sizeof whole_m);
     for (int k = 1;; k++) {

@@ -228,7 +228,7 @@ START_TEST(stale_contents_do_no_harm)
     memcpy(first, net.work.position_m, bytes);
     find_shape(&net); /* on the contents of the run before */
     ck_assert_mem_eq(net.work.position_m, first, bytes);
-    hf_workspace_poison(&net.model, &net.work);
+    poison_workspace(&net.model, &net.work);
     find_shape(&net);
     ck_assert_mem_eq(net.work.position_m, first, bytes);
     free(first);

@@ -134,7 +134,7 @@ START_TEST(shape_is_that_of_newton)
               "form.length_tolerance=1e-11");
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &net.result), HF_OK);
     double *shape = copy_positions(&net.model, &net.work);
-    hf_workspace_poison(&net.model, &net.work);
+    poison_workspace(&net.model, &net.work);
     net.work.stop = NULL;
     hf_form_prepare(&net.model, &net.work);
     ck_assert_int_eq(hf_interior_run(&net.model, &net.form, &net.work, false, MOST_STEPS, &n_step, &culprit), HF_OK);

@@ -225,7 +225,7 @@ START_TEST(stale_workspace_gives_the_same_bits)
     ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &first), HF_OK);
     double *shape = copy_positions(&net.model, &net.work);
     for (int pass = 0; pass < 2; pass++) { /* after its own results, and after rubbish */
-        if (pass) hf_workspace_poison(&net.model, &net.work);
+        if (pass) poison_workspace(&net.model, &net.work);
         ck_assert_int_eq(hf_evaluate_form(&net.model, &net.form, &net.work, NULL, &second), HF_OK);
         ck_assert_mem_eq(shape, net.work.position_m, bytes);
         ck_assert_int_eq(first.iterations, second.iterations);
