@@ -202,7 +202,7 @@ static hf_status fit_list(const hf_turnbuckles_problem *p, int n, const int *lis
     if (status == HF_OK) status = hf_quadratic_solve(&q, hessian, gradient, lower, upper, worst_bound, &b);
     for (int i = 0; i < n && status == HF_OK; i++)
         adjustment_m[i] = fmin(fmax(q.x[i], -b.max_m), b.max_m);
-    hf_arena_free(&q.arena);
+    hf_arena_free_block(q.block);
     hf_arena_free_block(block);
     return status == HF_NO_MEMORY ? status : HF_OK; /* other failures are rounding: adjustment_m stays 0 */
 }

@@ -35,16 +35,11 @@ void hf_quadratic_combine(int ld, int n, const double *weight, const double *J, 
 
 /* ---- layout ---- */
 
-static void lay_out(hf_arena *arena, hf_quadratic *to)
+hf_status hf_quadratic_create(int n_variable, hf_quadratic *to)
 {
-    size_t n = (size_t)to->n, ld = (size_t)to->ld;
-    HF_QUADRATIC_FIELDS(HF_ARENA_TAKE)
-}
-
-hf_status hf_quadratic_create(int n, hf_quadratic *q)
-{
-    *q = (hf_quadratic){.n = n, .ld = (n + HF_LANES - 1) / HF_LANES * HF_LANES};
-    return HF_ARENA_MAKE(&q->arena, lay_out(&q->arena, q));
+    size_t n = (size_t)n_variable, ld = (n + HF_LANES - 1) / HF_LANES * HF_LANES;
+    *to = (hf_quadratic){.n = n_variable, .ld = (int)ld};
+    return HF_ARENA_ARRAYS(&to->block, HF_QUADRATIC_FIELDS(HF_ARENA_ITEM));
 }
 
 /* ---- matrices ---- */

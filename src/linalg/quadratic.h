@@ -42,10 +42,10 @@ typedef bool hf_quadratic_worst(void *context, const double *x, hf_quadratic_lim
 typedef struct {
     int n, ld, n_active; /* n_active: limits that hold with equality */
     HF_QUADRATIC_FIELDS(HF_ARENA_MEMBER)
-    hf_arena arena;
+    void *block;
 } hf_quadratic;
 
-/* Allocates the arrays for n variables. Returns HF_OK or HF_NO_MEMORY. The caller frees its arena. */
+/* Allocates the arrays for n variables. Returns HF_OK or HF_NO_MEMORY. The caller frees its block. */
 hf_status hf_quadratic_create(int n, hf_quadratic *quadratic);
 
 /* Solves a programme. hessian [n][n]: the lower triangle is read, by rows. gradient [n]. low, high [n]: bounds of x.

@@ -124,7 +124,7 @@ static hf_status engine_bytes(const hf_evaluator *v, size_t *shared, size_t *lan
         hf_swarm_plan plan;
         HF_TRY(hf_swarm_plan_create(v->model, hf_lane_best_isa(), &plan));
         *lanes = hf_swarm_lanes_bytes(&plan);
-        hf_arena_free(&plan.arena);
+        hf_arena_free_block(plan.block);
     }
     return HF_OK;
 }

@@ -73,7 +73,7 @@ static void free_engine(hf_batch *batch)
         hf_arena_free(&e->lanes[i].arena);
     }
     hf_arena_free(&e->shared.arena);
-    hf_arena_free(&e->plan.arena);
+    hf_arena_free_block(e->plan.block);
     hf_arena_free_block(e);
     batch->engine = NULL;
 }

@@ -120,7 +120,7 @@ hf_status hf_refine_create(hf_refine_problem *to)
 
 void hf_refine_destroy(hf_refine_problem *p)
 {
-    hf_arena_free(&p->step.arena);
+    hf_arena_free_block(p->step.block);
     hf_arena_free_block(p->watch.block);
     hf_residuals_free(&p->residuals);
     hf_sensitivity_free(&p->slopes);

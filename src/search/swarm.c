@@ -23,13 +23,6 @@ static const hf_swarm_kernels *const kernels_of_isa[] = {HF_LANE_EACH(&hf_swarm_
 
 /* ---- plan ---- */
 
-static void lay_out(hf_arena *arena, hf_swarm_plan *to)
-{
-    const hf_model *m = to->model;
-    size_t n_widest = ((size_t)m->half_bandwidth + HF_SWARM_BLOCK - 1) / HF_SWARM_BLOCK + 1;
-    HF_SWARM_PLAN_FIELDS(HF_ARENA_TAKE)
-}
-
 /* Lists the cables at each free node, by a counting sort. incidence_start[row] first counts the cables of the row, then
  * is where they end, and while the list is filled from its end falls to where they begin. */
 static void list_incidences(hf_swarm_plan *p)
@@ -79,17 +72,18 @@ static void find_skyline(hf_swarm_plan *p)
             p->has_entry[p->tile_0[high / HF_SWARM_BLOCK] + (size_t)(low / HF_SWARM_BLOCK)] = 1;
 }
 
-hf_status hf_swarm_plan_create(const hf_model *m, hf_lane_isa isa, hf_swarm_plan *plan)
+hf_status hf_swarm_plan_create(const hf_model *m, hf_lane_isa isa, hf_swarm_plan *to)
 {
     assert(m->n_free > 0 && !m->has_strut && hf_lane_has_isa(isa));
     int n_block = (m->n_free + HF_SWARM_BLOCK - 1) / HF_SWARM_BLOCK;
-    *plan = (hf_swarm_plan){
+    size_t n_widest = ((size_t)m->half_bandwidth + HF_SWARM_BLOCK - 1) / HF_SWARM_BLOCK + 1;
+    *to = (hf_swarm_plan){
         .model = m, .kernels = kernels_of_isa[isa], .n_pad = n_block * HF_SWARM_BLOCK - m->n_free, .n_block = n_block};
-    HF_TRY(HF_ARENA_MAKE(&plan->arena, lay_out(&plan->arena, plan)));
-    list_incidences(plan);
-    find_skyline(plan);
+    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_SWARM_PLAN_FIELDS(HF_ARENA_ITEM)));
+    list_incidences(to);
+    find_skyline(to);
     for (int e = 0; e < m->n_cable; e++)
-        plan->inverse_length[e] = 1 / m->length_m[e];
+        to->inverse_length[e] = 1 / m->length_m[e];
     return HF_OK;
 }
 

@@ -60,7 +60,7 @@ typedef struct {
     int n_block;   /* number of block rows: n_pad + n_free = n_block * HF_SWARM_BLOCK */
     size_t n_tile; /* number of stored tiles */
     HF_SWARM_PLAN_FIELDS(HF_ARENA_MEMBER)
-    hf_arena arena;
+    void *block;
 } hf_swarm_plan;
 
 /* X(type, name, number of items for a plan `plan` of a model m, unit, meaning): one row per array of a lane. */
@@ -132,7 +132,7 @@ extern const hf_swarm_kernels HF_LANE_EACH(hf_swarm_kernels);
 /* ---- the iteration in the lanes ---- */
 
 /* Makes the plan of a model without struts, with the kernels of an instruction set that this machine has. Returns HF_OK
- * or HF_NO_MEMORY; the caller frees its arena. */
+ * or HF_NO_MEMORY; the caller frees its block. */
 hf_status hf_swarm_plan_create(const hf_model *model, hf_lane_isa isa, hf_swarm_plan *plan);
 
 /* hf_swarm_lanes_create allocates the fields in one block, and returns HF_OK or HF_NO_MEMORY; the caller frees its

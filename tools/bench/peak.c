@@ -136,7 +136,7 @@ static void open_net(const char *name, hf_lane_isa isa, net *n)
 static void close_net(net *n)
 {
     hf_arena_free(&n->lanes.arena);
-    hf_arena_free(&n->plan.arena);
+    hf_arena_free_block(n->plan.block);
     bench_scene_free(&n->scene);
 }
 

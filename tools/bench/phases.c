@@ -155,7 +155,7 @@ static void swarm_phases(bench_scene *b)
     population_phases(b, "fixed point iteration, lanes", run_swarm, 1);
     b->form = b->settings.form;
     hf_arena_free(&swarm_lanes.arena);
-    hf_arena_free(&swarm_plan.arena);
+    hf_arena_free_block(swarm_plan.block);
 }
 
 /* ---- eight to a pass, chord ---- */

@@ -181,7 +181,7 @@ void bench_step(const char *what, const char *folder)
         }
     bench_emit("step", b.name, "net", b.model.n_free, "half_bandwidth", b.model.half_bandwidth);
     hf_arena_free(&c.lanes.arena);
-    hf_arena_free(&c.plan.arena);
+    hf_arena_free_block(c.plan.block);
     bench_cholmod_free(c.cholmod);
     free(first);
     bench_scene_free(&b);

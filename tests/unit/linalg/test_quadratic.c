@@ -133,7 +133,7 @@ START_TEST(answers_obey_karush_kuhn_tucker)
     ck_assert_int_eq(hf_quadratic_create(p.n, &q), HF_OK);
     ck_assert_int_eq(solve(&q, &p), HF_OK);
     check_answer(&p, &q);
-    hf_arena_free(&q.arena);
+    hf_arena_free_block(q.block);
 }
 END_TEST
 
@@ -157,7 +157,7 @@ START_TEST(bounds_that_held_the_last_answer_are_where_the_next_begins)
     }
     ck_assert_int_eq(solve(&q, &p), HF_OK);
     check_answer(&p, &q);
-    hf_arena_free(&q.arena);
+    hf_arena_free_block(q.block);
 }
 END_TEST
 
@@ -187,7 +187,7 @@ START_TEST(answers_by_hand)
         ck_assert_double_eq_tol(q.x[0], answer[p.n_limit][0], 1e-14);
         ck_assert_double_eq_tol(q.x[1], answer[p.n_limit][1], 1e-14);
     }
-    hf_arena_free(&q.arena);
+    hf_arena_free_block(q.block);
 }
 END_TEST
 
@@ -202,7 +202,7 @@ START_TEST(what_has_no_answer_is_told)
     ck_assert_int_eq(solve(&q, &p), HF_DIFFERENT);
     p.hessian[0] = -1;
     ck_assert_int_eq(solve(&q, &p), HF_SINGULAR);
-    hf_arena_free(&q.arena);
+    hf_arena_free_block(q.block);
 }
 END_TEST
 

@@ -45,7 +45,7 @@ static void open_band_net(struct band_net *net, int n, int k, int (*is_left_out)
 
 static void close_band_net(struct band_net *net)
 {
-    hf_arena_free(&net->plan.arena);
+    hf_arena_free_block(net->plan.block);
     hf_arena_free(&net->work.arena);
     free(net->model.end_row);
     free(net->model.length_m);
@@ -289,7 +289,7 @@ static void copy_band_net(struct band_net *copy, const struct band_net *net, hf_
 
 static void close_copy(struct band_net *copy)
 {
-    hf_arena_free(&copy->plan.arena);
+    hf_arena_free_block(copy->plan.block);
     hf_arena_free(&copy->work.arena);
 }
 
@@ -476,7 +476,7 @@ static void compare_with_formfind(struct net *net, int isa)
         hf_swarm_update(&w);
     }
     hf_arena_free(&w.arena);
-    hf_arena_free(&plan.arena);
+    hf_arena_free_block(plan.block);
 }
 
 START_TEST(iterations_like_formfind_on_the_papers_net)
@@ -559,7 +559,7 @@ START_TEST(measures_by_hand)
     for (int l = 0; l < HF_LANES; l++)
         ck_assert_int_eq(m.is_finite[l], l != 4);
     hf_arena_free(&w.arena);
-    hf_arena_free(&plan.arena);
+    hf_arena_free_block(plan.block);
     close_net(&net);
 }
 END_TEST
