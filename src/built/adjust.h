@@ -70,6 +70,5 @@ int hf_adjust_steps(const hf_adjust_settings *settings);
 
 /* Finds the adjustments for an estimate on which hf_estimate_find has succeeded. Returns HF_OK, HF_NO_MEMORY or
  * HF_INTERRUPTED; HF_SINGULAR when the estimated shape has no stiffness; HF_NOT_FINITE when the figure of a shape has
- * no value; or the status of a shape that cannot be solved. Call hf_adjust_free in any case. */
+ * no value; or the status of a shape that cannot be solved. The caller frees its block in any case. */
 hf_status hf_adjust_find(hf_estimate *estimate, const hf_adjust_task *task, hf_adjustment *adjustment);
-void hf_adjust_free(hf_adjustment *adjustment);

@@ -117,12 +117,6 @@ hf_status hf_covariance_find(const hf_built_errors *e, int n_thread, hf_covarian
     return hf_built_must_stop(l->built) ? HF_INTERRUPTED : HF_OK;
 }
 
-void hf_covariance_free(hf_covariance *c)
-{
-    hf_arena_free_block(c->block);
-    *c = (hf_covariance){0};
-}
-
 double hf_covariance_psi_m(const hf_built_linear *l, const double *move)
 {
     const hf_model *m = &l->built->model;

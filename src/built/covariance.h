@@ -21,9 +21,8 @@ typedef struct {
 } hf_covariance;
 
 /* Computes all members. The result has the same bits for any number of threads. Returns HF_OK, HF_NO_MEMORY or
- * HF_INTERRUPTED; call hf_covariance_free in any case. */
+ * HF_INTERRUPTED; the caller frees its block in any case. */
 hf_status hf_covariance_find(const hf_built_errors *errors, int n_thread, hf_covariance *covariance);
-void hf_covariance_free(hf_covariance *covariance);
 
 /* Returns psi, m, of the nominal net after the displacements move_m [n_dof]; NULL: without displacements. */
 double hf_covariance_psi_m(const hf_built_linear *linear, const double *move_m);

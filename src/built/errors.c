@@ -68,12 +68,6 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
     return HF_OK;
 }
 
-void hf_built_errors_free(hf_built_errors *e)
-{
-    hf_arena_free_block(e->block);
-    *e = (hf_built_errors){0};
-}
-
 /* ---- numbers ---- */
 
 unsigned hf_built_errors_vary(const hf_built_errors *e)

@@ -52,10 +52,9 @@ typedef struct {
 
 /* Makes the errors that `settings` describes, for the net of `linear`. Both `linear` and its net are borrowed. The
  * spool of a cable is the first set, in the order of names, that has the cable, or else its group. heat is NULL when no
- * temperature varies. Returns HF_OK or HF_NO_MEMORY; call hf_built_errors_free in any case. */
+ * temperature varies. Returns HF_OK or HF_NO_MEMORY; the caller frees its block in any case. */
 hf_status hf_built_errors_make(const hf_built_linear *linear, const hf_tolerance_settings *settings,
                                const hf_built_heat *heat, hf_built_errors *errors);
-void hf_built_errors_free(hf_built_errors *errors);
 
 static inline int hf_built_errors_count(const hf_built_errors *errors)
 {

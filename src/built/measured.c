@@ -89,12 +89,6 @@ hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_mod
     return status == HF_OK ? count_nodes(path, m, measured, messages) : status;
 }
 
-void hf_measured_free(hf_measured *measured)
-{
-    hf_arena_free_block(measured->block);
-    *measured = (hf_measured){0};
-}
-
 /* ---- another unit or frame ---- */
 
 /* Describes the rigid motion that fits the measured positions best to the nominal ones. */

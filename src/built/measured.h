@@ -17,10 +17,9 @@ typedef struct {
 
 /* Reads the table. `scene` has the ids of the nodes, `model` has their rows. sigma_m is the standard deviation of nodes
  * without one in the table; 0: there is none. Returns HF_OK; HF_BAD_CASE with all faults by file, line and id;
- * HF_NO_MEMORY. Call hf_measured_free in any case. */
+ * HF_NO_MEMORY. The caller frees its block in any case. */
 hf_status hf_measured_read(const char *path, const hf_scene *scene, const hf_model *model, double sigma_m,
                            hf_measured *measured, hf_messages *messages);
-void hf_measured_free(hf_measured *measured);
 
 /* Checks whether errors of the expected size can explain the measured positions. expected_m [n_node of the model] is
  * the RMS displacement of each node by row. Returns HF_OK, perhaps with warnings; or HF_BAD_CASE with an explanation:

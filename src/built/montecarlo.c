@@ -69,8 +69,8 @@ void hf_montecarlo_free(hf_montecarlo *t)
 {
     hf_built_batch_free(t->batch);
     hf_directions_free(&t->directions);
-    hf_covariance_free(&t->covariance);
-    hf_built_errors_free(&t->errors);
+    hf_arena_free_block(t->covariance.block);
+    hf_arena_free_block(t->errors.block);
     hf_built_linear_free(&t->linear);
     hf_arena_free_block(t->block);
     *t = (hf_montecarlo){0};

@@ -98,12 +98,6 @@ hf_status hf_prior_make(const hf_built *b, const hf_tolerance_settings *t, const
     hf_status status = hf_built_errors_make(&of, t, &(hf_built_heat){expansion_per_K, NULL}, &errors);
     if (status == HF_OK) status = allocate_prior(&errors, p);
     if (status == HF_OK) fill_prior(&errors, p);
-    hf_built_errors_free(&errors);
+    hf_arena_free_block(errors.block);
     return status;
-}
-
-void hf_prior_free(hf_prior *p)
-{
-    hf_arena_free_block(p->block);
-    *p = (hf_prior){0};
 }

@@ -25,7 +25,6 @@ typedef struct {
 
 /* Makes the prior. An error of EA counts as the error of the length that strains the cable by the same tension. The
  * number of a spool with one cable is part of that cable's own error. expansion_per_K [n_cable] is needed with
- * sigma_temperature_K. Returns HF_OK or HF_NO_MEMORY; call hf_prior_free in any case. */
+ * sigma_temperature_K. Returns HF_OK or HF_NO_MEMORY; the caller frees its block in any case. */
 hf_status hf_prior_make(const hf_built *built, const hf_tolerance_settings *settings, const double *expansion_per_K,
                         hf_prior *prior);
-void hf_prior_free(hf_prior *prior);

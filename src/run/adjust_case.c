@@ -184,7 +184,7 @@ static hf_status try_instead(hf_adjust_case *j, hf_figure_kind figure, hf_aim ai
     if (status == HF_OK)
         j->instead[j->n_instead++] = (hf_adjust_case_instead){
             figure, aim, found.estimated_m, found.adjusted_m, found.n_turnbuckle, count_at_range(&found, &settings)};
-    hf_adjust_free(&found);
+    hf_arena_free_block(found.block);
     hf_objectives_free(&objectives);
     take_aim(j, j->task.settings->aim);
     /* An aim without a shape is not offered. */
@@ -316,7 +316,7 @@ static hf_status find_least(job *j, hf_messages *messages)
             double *least_N = &j->least_N[limits.row[k].cable[i]];
             *least_N = fmax(*least_N, limits.row[k].lower);
         }
-    hf_limits_free(&limits);
+    hf_arena_free_block(limits.block);
     return status;
 }
 
@@ -412,11 +412,11 @@ static hf_status allocate_job(job *j, hf_messages *messages)
 
 void hf_adjust_case_free(hf_adjust_case *j)
 {
-    hf_adjust_free(&j->adjustment);
-    hf_prior_free(&j->prior);
+    hf_arena_free_block(j->adjustment.block);
+    hf_arena_free_block(j->prior.block);
     hf_objectives_free(&j->objectives);
     hf_estimate_free(&j->estimate);
-    hf_measured_free(&j->measured);
+    hf_arena_free_block(j->measured.block);
     hf_built_free(&j->built);
     hf_problem_free(&j->problem);
     hf_arena_free_block(j->block);

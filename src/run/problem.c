@@ -96,7 +96,7 @@ void hf_problem_free(hf_problem *p)
     hf_workspace_free(&p->workspace);
     hf_model_free(&p->model);
     hf_carrier_free(&p->carrier);
-    hf_limits_free(&p->limits);
+    hf_arena_free_block(p->limits.block);
     hf_objectives_free(&p->objectives);
     hf_problem_nets_free(p);
     hf_load_cases_free(&p->load_cases);

@@ -54,12 +54,6 @@ hf_status hf_limits_create(const hf_scene *scene, const hf_model *m, const hf_op
     return status;
 }
 
-void hf_limits_free(hf_limits *l)
-{
-    hf_arena_free_block(l->block);
-    *l = (hf_limits){0};
-}
-
 /* ---- violations ---- */
 
 /* Returns the sum over the cables of 1 - T/t below t and 1 - cap t/T above cap t, where t^2 = min T max T / cap. The

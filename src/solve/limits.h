@@ -6,10 +6,9 @@
 #include <hifdm/evaluate.h>
 
 /* Creates the limits of a case. Returns HF_OK; HF_BAD_CASE for a set that does not exist or is empty, or for
- * displacements without a truss; HF_NO_MEMORY. Without rows there is nothing to free. */
+ * displacements without a truss; HF_NO_MEMORY. The caller frees their block in any case. */
 hf_status hf_limits_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                            hf_limits *limits, hf_messages *messages);
-void hf_limits_free(hf_limits *limits);
 
 /* Returns the violation of the shape in the workspace: the sum over the rows, and over the cap on the boundary ratio.
  * It is 0 if the shape obeys all limits. */

@@ -104,8 +104,8 @@ static double run_twin(twin *t, int n, const char *what, double range_m, double 
     ck_assert_double_lt(fabs(after - found.doubt_m[1]), 6 * found.spread_m[1] + 0.1 * found.doubt_m[1]);
     double ratio = after / known.adjusted_m;
     *missed = missed_gains(t, &found) / found.n_turnbuckle;
-    hf_adjust_free(&found);
-    hf_adjust_free(&known);
+    hf_arena_free_block(found.block);
+    hf_arena_free_block(known.block);
     hf_objectives_free(&j.objectives);
     hf_estimate_free(&p);
     return ratio;
@@ -196,7 +196,7 @@ START_TEST(least_tensions_are_kept)
                found.n_turnbuckle, lacks[asked]);
         ck_assert_int_gt(found.n_turnbuckle, 0);
         ck_assert(found.is_held_taut);
-        hf_adjust_free(&found);
+        hf_arena_free_block(found.block);
         hf_estimate_free(&p);
     }
     ck_assert_double_gt(lacks[0], 0.1); /* else there would be nothing to keep */
@@ -227,7 +227,7 @@ START_TEST(least_tensions_are_kept_far_away)
     double lacks = shortfall(&t, &p, &found, least_N);
     printf("net %d: %d moves, %.3f of a least tension is not there\n", _i, found.n_turnbuckle, lacks);
     ck_assert_double_lt(lacks, 0.1 + 1e-6); /* shapes on the way are found to tolerances */
-    hf_adjust_free(&found);
+    hf_arena_free_block(found.block);
     hf_estimate_free(&p);
     hf_objectives_free(&j.objectives);
     close_twin(&t);
@@ -252,8 +252,8 @@ START_TEST(moves_repeat)
     ck_assert(found[0].adjusted_m == found[1].adjusted_m && found[0].best_m == found[1].best_m);
     for (int k = 0; k < found[0].n_turnbuckle; k++)
         ck_assert(memcmp(&found[0].turnbuckle[k], &found[1].turnbuckle[k], sizeof *found[0].turnbuckle) == 0);
-    hf_adjust_free(&found[0]);
-    hf_adjust_free(&found[1]);
+    hf_arena_free_block(found[0].block);
+    hf_arena_free_block(found[1].block);
     hf_objectives_free(&j.objectives);
     close_twin(&t);
 }

@@ -49,7 +49,7 @@ START_TEST(a_cable_of_two_sets_is_of_the_first)
     ck_assert_int_eq(errors.n_spool, 4);
     for (int e = 0; e < s->n_cable; e++)
         ck_assert_int_eq(errors.spool[e], e < 2 ? 0 : e == 2 ? 1 : 2 + s->group[e]);
-    hf_built_errors_free(&errors);
+    hf_arena_free_block(errors.block);
     close_known(&k);
 }
 END_TEST
@@ -75,7 +75,7 @@ START_TEST(variances_add_up)
             shared += pow(p.shared_m[(size_t)i * n + e], 2);
         ck_assert_double_eq_tol(shared, pow(p.sigma_m[e], 2) - own, 1e-12 * pow(p.sigma_m[e], 2));
     }
-    hf_prior_free(&p);
+    hf_arena_free_block(p.block);
     close_known(&k);
 }
 END_TEST

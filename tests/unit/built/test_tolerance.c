@@ -183,12 +183,12 @@ START_TEST(what_is_told_to_stop_leaves)
     s.m.row[HF_TOLERANCE_LINEAR_PSI] = -1;
     ck_assert_int_eq(hf_montecarlo_run(&s.m, 1, 0, s.m.n_chunk), HF_INTERRUPTED);
     ck_assert_double_eq(s.m.row[HF_TOLERANCE_LINEAR_PSI], -1);
-    hf_covariance_free(&c);
+    hf_arena_free_block(c.block);
     stop = 0;
     ck_assert_int_eq(hf_covariance_find(&s.m.errors, 2, &c), HF_OK);
     ck_assert_double_eq(c.spread_m2, s.m.covariance.spread_m2);
     ck_assert_int_eq(hf_montecarlo_run(&s.m, 1, 0, s.m.n_chunk), HF_OK);
-    hf_covariance_free(&c);
+    hf_arena_free_block(c.block);
     close_study(&s);
 }
 END_TEST
