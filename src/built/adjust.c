@@ -38,63 +38,50 @@
 
 /* ---- memory ---- */
 
-/* The arrays of a room `to` of an adjustment a, for a model m. */
-#define ROOM_FIELDS(X)                                                                                                 \
-    X(double, lanes, hf_packed_band_rows(&a->matrix) * HF_LANES, "scratch for solves with the packed matrix")          \
-    X(double, strain_N, PANEL *(size_t)m->n_cable, "[PANEL][n_cable] strains of hf_built_linear_apply")                \
-    X(double, answer_m, PANEL * a->n_dof, "[PANEL][n_dof] displacements of hf_built_linear_apply")                     \
-    X(double, scratch, PANEL * a->estimate->linear.n_scratch, "[PANEL][...] scratch of hf_built_linear_apply")         \
-    X(double, rate_m, a->n_dof, "argument of hf_objectives_push")                                                      \
-    X(double, rate_N, m->n_cable, "0, because the figure depends on positions alone")                                  \
-    X(double, displacement_m, 3 * (size_t)m->n_attachment, "0, for the same reason")
-
 /* Holds what one thread needs to compute the effects of cables on the figure. */
 typedef struct {
     hf_objectives_point point;
-    ROOM_FIELDS(HF_ARENA_MEMBER)
+    double *lanes; /* scratch for solves with the packed matrix */
+    /* [PANEL][...] strains, displacements and scratch of hf_built_linear_apply. */
+    double *strain_N, *answer_m, *scratch;
+    /* Arguments of hf_objectives_push. The figure depends on positions alone, so the last two stay 0. */
+    double *rate_m, *rate_N, *displacement_m;
     void *block;
 } adjust_room;
-
-/* The arrays of an adjustment `to`, for n turnbuckles and n_cable cables of the model. `column` and `product` have
- * n_all = n + HF_ESTIMATE_SAMPLES + 1 rows. */
-#define ADJUSTMENT_FIELDS(X)                                                                                           \
-    X(adjust_room, room, to->n_room, "one for each thread")                                                            \
-    X(double, adjustment_m, n_cable, "adjustments of the shape solved last")                                           \
-    X(double, doubt_m, by_sample, "[HF_ESTIMATE_SAMPLES][n_dof] posterior displacements")                              \
-    X(double, doubt_N, n_cable, "standard deviations of the estimated tensions")                                       \
-    X(double, cause_cut_m, HF_ESTIMATE_SAMPLES *n_cable, "posterior errors that cause doubt_m: of lengths")            \
-    X(double, cause_rest_m, by_sample, "[HF_ESTIMATE_SAMPLES][n_dof] and of supports")                                 \
-    X(double, answer_m, by_sample, "[HF_ESTIMATE_SAMPLES][n_dof] linear displacements of the posterior samples")       \
-    X(double, beyond_m, by_sample, "[HF_ESTIMATE_SAMPLES][n_dof] the solved minus these after all adjustments")        \
-    X(double, residual, to->n_row, "of the shape solved last")                                                         \
-    X(double, column, n_all * to->n_row,                                                                               \
-      "[n][n_row] derivatives of the residuals by each cut length, left_open, at_zero")                                \
-    X(double, product, n_all *n_all, "products of the rows of `column` with each other")                               \
-    X(double, gram, n *n, "[n][n] J'J")                                                                                \
-    X(double, slope, n, "J'r")                                                                                         \
-    X(double, sample, HF_ESTIMATE_SAMPLES *n, "[HF_ESTIMATE_SAMPLES][n] J'dr")                                         \
-    X(double, continuous_m, n, "continuous adjustments")                                                               \
-    X(int, steps, n, "steps of the accepted choice")                                                                   \
-    X(int, trial, n, "steps of the tried choice")                                                                      \
-    X(double, min_N, n_cable, "tensions that adjustments must keep")                                                   \
-    X(double, room_N, n_cable, "how far each tension may fall below its value without adjustments")
 
 typedef struct {
     hf_estimate *estimate;
     const hf_adjust_task *task;
     int n_room;
+    adjust_room *room;      /* [n_room], one for each thread */
     hf_packed_band matrix;  /* factor of the linear model, packed for eight right-hand sides */
     size_t n, n_row, n_dof; /* numbers of turnbuckles, of residuals of the figure, of coordinates */
     hf_workspace work;      /* the shape solved last */
     hf_form_result form;
-    ADJUSTMENT_FIELDS(HF_ARENA_MEMBER)
+    double *adjustment_m;    /* [n_cable of the model] adjustments of that shape */
+    double *doubt_m;         /* [HF_ESTIMATE_SAMPLES][n_dof] posterior displacements */
+    double *doubt_N;         /* [n_cable of the model] standard deviations of the estimated tensions */
+    hf_estimate_cause cause; /* posterior errors that cause doubt_m */
+    /* [HF_ESTIMATE_SAMPLES][n_dof] linear displacements of the posterior samples, and the solved displacements minus
+     * these after all adjustments. */
+    double *answer_m, *beyond_m;
+    double *residual; /* [n_row] of the shape solved last */
+    /* [n][n_row] derivatives of the residuals with respect to each cut length, per metre. The rows of left_open and
+     * at_zero follow in the same array. */
+    double *column;
     /* [HF_ESTIMATE_SAMPLES][n_row] changes of the residuals by each posterior sample, and [n_row] residuals without
      * adjustments by the linear model. */
     double *left_open, *at_zero;
+    double *product; /* products of these n + HF_ESTIMATE_SAMPLES + 1 rows with each other */
+    /* [n][n] J'J; [n] J'r; [HF_ESTIMATE_SAMPLES][n] J'dr; [n] continuous adjustments, m. */
+    double *gram, *slope, *sample, *continuous_m;
+    int *steps, *trial; /* [n] steps of the accepted and of the tried choice */
+    double *min_N;      /* [n_cable of the model] tensions that adjustments must keep */
+    /* [n_cable of the model] how far each tension may fall below its value without adjustments. */
+    double *room_N;
     bool is_current; /* true: the linear model belongs to the shape with `steps` */
     hf_turnbuckles_problem problem;
-    hf_arena arena; /* arrays of `matrix` */
-    void *block;
+    void *block, *matrix_block;
 } adjustment;
 
 static size_t rows_of(const adjustment *a)
@@ -102,19 +89,32 @@ static size_t rows_of(const adjustment *a)
     return a->n + HF_ESTIMATE_SAMPLES + 1;
 }
 
-static hf_status open_room(const adjustment *a, adjust_room *to)
+static hf_status open_room(const adjustment *a, adjust_room *r)
 {
     const hf_model *m = &a->estimate->built->model;
-    HF_TRY(HF_ARENA_ARRAYS(&to->block, ROOM_FIELDS(HF_ARENA_ITEM)));
-    return hf_objectives_point_create(a->task->objectives, &to->point);
+    HF_TRY(HF_ARENA_ARRAYS(&r->block, HF_ARRAY(r->lanes, hf_packed_band_rows(&a->matrix) * HF_LANES),
+                           HF_ARRAY(r->strain_N, PANEL * (size_t)m->n_cable), HF_ARRAY(r->answer_m, PANEL * a->n_dof),
+                           HF_ARRAY(r->scratch, PANEL * a->estimate->linear.n_scratch), HF_ARRAY(r->rate_m, a->n_dof),
+                           HF_ARRAY(r->rate_N, m->n_cable), HF_ARRAY(r->displacement_m, 3 * (size_t)m->n_attachment)));
+    return hf_objectives_point_create(a->task->objectives, &r->point);
 }
 
-static hf_status allocate(adjustment *to)
+static hf_status allocate(adjustment *a)
 {
-    size_t n_cable = (size_t)to->estimate->built->model.n_cable, n_all = rows_of(to), n = to->n;
-    size_t by_sample = HF_ESTIMATE_SAMPLES * to->n_dof;
-    HF_TRY(HF_ARENA_ARRAYS(&to->block, ADJUSTMENT_FIELDS(HF_ARENA_ITEM)));
-    return HF_ARENA_MAKE(&to->arena, hf_packed_band_lay_out(&to->arena, &to->matrix));
+    size_t n_cable = (size_t)a->estimate->built->model.n_cable, n_all = rows_of(a), n = a->n;
+    size_t by_sample = HF_ESTIMATE_SAMPLES * a->n_dof;
+    hf_arena arena = {0};
+    HF_TRY(HF_ARENA_ARRAYS(
+        &a->block, HF_ARRAY(a->room, a->n_room), HF_ARRAY(a->adjustment_m, n_cable), HF_ARRAY(a->doubt_m, by_sample),
+        HF_ARRAY(a->doubt_N, n_cable), HF_ARRAY(a->cause.cut_m, HF_ESTIMATE_SAMPLES * n_cable),
+        HF_ARRAY(a->cause.rest_m, by_sample), HF_ARRAY(a->answer_m, by_sample), HF_ARRAY(a->beyond_m, by_sample),
+        HF_ARRAY(a->residual, a->n_row), HF_ARRAY(a->column, n_all * a->n_row), HF_ARRAY(a->product, n_all * n_all),
+        HF_ARRAY(a->gram, n * n), HF_ARRAY(a->slope, n), HF_ARRAY(a->sample, HF_ESTIMATE_SAMPLES * n),
+        HF_ARRAY(a->continuous_m, n), HF_ARRAY(a->steps, n), HF_ARRAY(a->trial, n), HF_ARRAY(a->min_N, n_cable),
+        HF_ARRAY(a->room_N, n_cable)));
+    HF_TRY(HF_ARENA_MAKE(&arena, hf_packed_band_lay_out(&arena, &a->matrix)));
+    a->matrix_block = arena.block;
+    return HF_OK;
 }
 
 /* Computes the changes of tension [n_cable], N, that the strains in the first room cause in the linear model. */
@@ -172,7 +172,7 @@ static void free_adjustment(adjustment *a)
         hf_objectives_point_free(&a->room[i].point);
         hf_arena_free_block(a->room[i].block);
     }
-    hf_arena_free(&a->arena);
+    hf_arena_free_block(a->matrix_block);
     hf_arena_free_block(a->block);
 }
 
@@ -441,11 +441,11 @@ static hf_status answer_samples(adjustment *a)
     size_t n_cable = (size_t)l->built->model.n_cable;
     hf_status status = hf_built_linear_take(l, &a->work);
     if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-    memcpy(a->answer_m, status == HF_OK ? a->cause_rest_m : a->doubt_m,
+    memcpy(a->answer_m, status == HF_OK ? a->cause.rest_m : a->doubt_m,
            HF_ESTIMATE_SAMPLES * a->n_dof * sizeof *a->answer_m);
     for (size_t s = 0; s < HF_ESTIMATE_SAMPLES && status == HF_OK; s++) {
         for (size_t e = 0; e < n_cable; e++)
-            r->strain_N[e] = l->cut_N_per_m[e] * a->cause_cut_m[s * n_cable + e];
+            r->strain_N[e] = l->cut_N_per_m[e] * a->cause.cut_m[s * n_cable + e];
         hf_built_linear_apply(l, NULL, 1, r->strain_N, NULL, a->answer_m + s * a->n_dof, r->scratch);
     }
     return HF_OK;
@@ -457,8 +457,8 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
     const adjustment *a = context;
     const hf_estimate *p = a->estimate;
     const hf_model *m = &p->built->model;
-    const double *own_m = a->cause_cut_m + (size_t)i * (size_t)m->n_cable;
-    const double *rest_m = a->cause_rest_m + (size_t)i * a->n_dof;
+    const double *own_m = a->cause.cut_m + (size_t)i * (size_t)m->n_cable;
+    const double *rest_m = a->cause.rest_m + (size_t)i * a->n_dof;
     (void)EA_N;
     for (int e = 0; e < m->n_cable; e++)
         cut_m[e] += p->cut_m[e] + own_m[e] + a->adjustment_m[e];
@@ -619,8 +619,7 @@ static hf_status find_all(adjustment *a, hf_adjustment *found)
 {
     HF_TRY(hf_built_solve(a->estimate->built, &(hf_built_net){0}, &a->work, &a->form));
     HF_TRY(measure_work(a, &found->nominal_m));
-    HF_TRY(
-        hf_estimate_doubt(a->estimate, a->doubt_m, a->doubt_N, &(hf_estimate_cause){a->cause_cut_m, a->cause_rest_m}));
+    HF_TRY(hf_estimate_doubt(a->estimate, a->doubt_m, a->doubt_N, &a->cause));
     HF_TRY(choose(a, found));
     HF_TRY(list_adjustments(a, found));
     return find_best(a, found);

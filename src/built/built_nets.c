@@ -15,25 +15,6 @@
 
 /* ---- working memory of a thread ---- */
 
-/* The arrays of a room `to` for a model m with n cables and n_dof coordinates. `many` is HF_OBJECTIVES_AT_ONCE. */
-#define ROOM_FIELDS(X)                                                                                                 \
-    X(double, cut_m, n, "of one net, as are the next three")                                                           \
-    X(double, EA_N, n, "")                                                                                             \
-    X(double, move_m, n_dof, "[3][n_node] by row")                                                                     \
-    X(double, load_N, n_dof, "[3][n_node] by row")                                                                     \
-    X(double, stretch, n, "derivative of the cut length in this net with respect to the cut length of the design")     \
-    X(double, weight_N_per_m, 3 * n, "[n_cable][3] weight per unstressed length in a load case")                       \
-    X(double, length_m, n, "lengths in one shape")                                                                     \
-    X(unsigned char, loose, m->n_node, "all 0: each node counts at the position that it has")                          \
-    X(double, strain_N, many *n, "[many][n_cable] argument of hf_built_linear_apply, as are the next three")           \
-    X(double, dof_load_N, many *n_dof, "[many][n_dof]")                                                                \
-    X(double, dof_move_m, many *n_dof, "[many][n_dof]")                                                                \
-    X(double, scratch, many *hf_built_linear_scratch(m), "")                                                           \
-    X(double, cut_rate, n, "derivatives of the cut lengths of the design")                                             \
-    X(double, rate_m, many *n_dof, "[many] derivatives of the shape of a net, as are the next two")                    \
-    X(double, rate_N, many *n, "")                                                                                     \
-    X(double, rate_displacement_m, many * 3 * (size_t)m->n_attachment, "")
-
 typedef struct {
     const hf_built_nets *nets;
     bool is_made; /* false before the first design that could be cut */
@@ -44,9 +25,18 @@ typedef struct {
     hf_workspace design, of_net; /* views of a shape; other objects own the arrays */
     hf_objectives_take *take;
     void *context;
-    ROOM_FIELDS(HF_ARENA_MEMBER)
-    double *z;       /* [hf_built_errors_count] numbers of a sample */
-    bool has_weight; /* weight_N_per_m is not 0 */
+    double *cut_m, *EA_N, *move_m, *load_N; /* [n_cable] or [3][n_node] by row, of one net */
+    double *z;                              /* [hf_built_errors_count] numbers of a sample */
+    /* [n_cable] derivative of the cut length in this net with respect to the cut length of the design. */
+    double *stretch;
+    double *weight_N_per_m; /* [n_cable][3] weight per unstressed length in a load case */
+    bool has_weight;
+    double *length_m;     /* [n_cable] lengths in one shape */
+    unsigned char *loose; /* [n_node] all 0: each node counts at the position that it has */
+    /* [HF_OBJECTIVES_AT_ONCE][...] arguments of hf_built_linear_apply. */
+    double *strain_N, *dof_load_N, *dof_move_m, *scratch;
+    double *cut_rate;                              /* [n_cable] derivatives of the cut lengths of the design */
+    double *rate_m, *rate_N, *rate_displacement_m; /* [HF_OBJECTIVES_AT_ONCE] derivatives of the shape of a net */
     void *block, *more;
 } nets_room;
 
@@ -55,10 +45,16 @@ static hf_status open_room(const hf_objectives_nets *as, void **room)
     const hf_built_nets *nets = (const void *)as;
     const hf_model *m = nets->model;
     size_t n = (size_t)m->n_cable, n_dof = 3 * (size_t)m->n_node, many = HF_OBJECTIVES_AT_ONCE;
-    nets_room made = {.nets = nets}, *to = &made, *kept;
-    hf_status status = HF_ARENA_ARRAYS(&made.block, ROOM_FIELDS(HF_ARENA_ITEM) HF_ARRAY(kept, 1));
+    nets_room r = {.nets = nets}, *kept;
+    hf_status status = HF_ARENA_ARRAYS(
+        &r.block, HF_ARRAY(kept, 1), HF_ARRAY(r.cut_m, n), HF_ARRAY(r.EA_N, n), HF_ARRAY(r.move_m, n_dof),
+        HF_ARRAY(r.load_N, n_dof), HF_ARRAY(r.stretch, n), HF_ARRAY(r.weight_N_per_m, 3 * n), HF_ARRAY(r.length_m, n),
+        HF_ARRAY(r.loose, m->n_node), HF_ARRAY(r.strain_N, many * n), HF_ARRAY(r.dof_load_N, many * n_dof),
+        HF_ARRAY(r.dof_move_m, many * n_dof), HF_ARRAY(r.scratch, many * hf_built_linear_scratch(m)),
+        HF_ARRAY(r.cut_rate, n), HF_ARRAY(r.rate_m, many * n_dof), HF_ARRAY(r.rate_N, many * n),
+        HF_ARRAY(r.rate_displacement_m, many * 3 * (size_t)m->n_attachment));
     *room = kept;
-    if (status == HF_OK) *kept = made;
+    if (status == HF_OK) *kept = r;
     return status;
 }
 

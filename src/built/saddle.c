@@ -55,30 +55,38 @@ static void list_cables(hf_saddle_dual *d)
         d->cable[--d->start[m->end_row[i]]] = i / 2;
 }
 
-static hf_status create_dual(const hf_built_linear *l, hf_saddle_dual *to)
+static hf_status create_dual(const hf_built_linear *l, hf_saddle_dual *d)
 {
     const hf_model *m = &l->built->model;
-    size_t n = 3 * (size_t)m->n_free, n_cable = (size_t)m->n_cable;
-    *to = (hf_saddle_dual){.linear = l, .n = (int)n, .half_bandwidth = 6 * m->half_bandwidth + 2};
-    if (to->half_bandwidth > to->n - 1) to->half_bandwidth = to->n - 1;
-    HF_TRY(HF_ARENA_ARRAYS(&to->memory, HF_SADDLE_DUAL_FIELDS(HF_ARENA_ITEM)));
-    list_cables(to);
+    size_t n = 3 * (size_t)m->n_free, n_cable = (size_t)m->n_cable, panel = HF_SADDLE_PANEL;
+    *d = (hf_saddle_dual){.linear = l, .n = (int)n, .half_bandwidth = 6 * m->half_bandwidth + 2};
+    if (d->half_bandwidth > d->n - 1) d->half_bandwidth = d->n - 1;
+    HF_TRY(HF_ARENA_ARRAYS(&d->memory, HF_ARRAY(d->start, m->n_node + 1), HF_ARRAY(d->cable, 2 * n_cable),
+                           HF_ARRAY(d->block, 9 * n_cable), HF_ARRAY(d->push, n_cable), HF_ARRAY(d->spring, m->n_free),
+                           HF_ARRAY(d->weight, n), HF_ARRAY(d->band, n * ((size_t)d->half_bandwidth + 1)),
+                           HF_ARRAY(d->right, panel * n), HF_ARRAY(d->solution, panel * 2 * n),
+                           HF_ARRAY(d->error, panel * 2 * n), HF_ARRAY(d->probe, 2 * n)));
+    list_cables(d);
     return HF_OK;
 }
 
-hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prior, hf_saddle *to)
+hf_status hf_saddle_create(const hf_built_linear *l, const hf_saddle_prior *prior, hf_saddle *s)
 {
     const hf_model *m = &l->built->model;
-    *to = (hf_saddle){.linear = l, .prior = *prior, .n_band = 6 * m->n_free, .n_attached = 3 * m->n_attachment};
-    to->half_bandwidth = 6 * m->half_bandwidth + 5;
-    if (prior->support_sigma_m > 0) to->n_off = 3 * (m->n_node - m->n_free - m->n_attachment);
-    to->n_border = 2 * to->n_attached + to->n_off + prior->n_shared;
+    *s = (hf_saddle){.linear = l, .prior = *prior, .n_band = 6 * m->n_free, .n_attached = 3 * m->n_attachment};
+    s->half_bandwidth = 6 * m->half_bandwidth + 5;
+    if (prior->support_sigma_m > 0) s->n_off = 3 * (m->n_node - m->n_free - m->n_attachment);
+    s->n_border = 2 * s->n_attached + s->n_off + prior->n_shared;
     size_t n_cable = (size_t)m->n_cable; /* size_m: maximum error by one standard deviation of one number */
-    to->size_m = fmax(hf_max_magnitude(n_cable, prior->sigma_m),
-                      hf_max_magnitude((size_t)prior->n_shared * n_cable, prior->shared_m));
-    size_t n = (size_t)to->n_band, border = (size_t)to->n_border, attached = (size_t)to->n_attached;
-    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_SADDLE_FIELDS(HF_ARENA_ITEM)));
-    return may_be_dual(to) ? create_dual(l, &to->dual) : HF_OK;
+    s->size_m = fmax(hf_max_magnitude(n_cable, prior->sigma_m),
+                     hf_max_magnitude((size_t)prior->n_shared * n_cable, prior->shared_m));
+    size_t n = (size_t)s->n_band, border = (size_t)s->n_border, attached = (size_t)s->n_attached;
+    HF_TRY(HF_ARENA_ARRAYS(&s->block, HF_ARRAY(s->general, n * (size_t)room_of_band(s)), HF_ARRAY(s->pivot, n),
+                           HF_ARRAY(s->column, border * n), HF_ARRAY(s->solved, border * n),
+                           HF_ARRAY(s->corner, border * border), HF_ARRAY(s->dense, border * border),
+                           HF_ARRAY(s->flex, attached * attached), HF_ARRAY(s->work, (1 + HF_SADDLE_PANEL) * border),
+                           HF_ARRAY(s->dense_pivot, border)));
+    return may_be_dual(s) ? create_dual(l, &s->dual) : HF_OK;
 }
 
 void hf_saddle_free(hf_saddle *s)

@@ -27,21 +27,6 @@ typedef struct {
 
 #define HF_SADDLE_PANEL 3 /* right-hand sides for which the band kernel reads the factor once */
 
-/* The arrays of hf_saddle_dual `to` for a model m: n rows and n_cable cables. */
-#define HF_SADDLE_DUAL_FIELDS(X)                                                                                       \
-    X(int, start, m->n_node + 1, "first cable of each row in `cable`")                                                 \
-    X(int, cable, 2 * n_cable, "cables of each row")                                                                   \
-    X(double, block, 9 * n_cable, "[n_cable][9] stiffness blocks, scaled")                                             \
-    X(double, push, n_cable, "sigma^2 (dT/dl0)^2, scaled")                                                             \
-    X(double, spring, m->n_free, "springs of loose nodes, scaled")                                                     \
-    X(double, weight, n, "W, scaled")                                                                                  \
-    X(double, band, n *((size_t)to->half_bandwidth + 1), "the matrix, then its factor")                                \
-    X(double, right, HF_SADDLE_PANEL *n, "[HF_SADDLE_PANEL][n] right-hand sides of the matrix")                        \
-    X(double, solution, HF_SADDLE_PANEL * 2 * n,                                                                       \
-      "[HF_SADDLE_PANEL][2 n], three multipliers and three displacements of each row")                                 \
-    X(double, error, HF_SADDLE_PANEL * 2 * n, "the same")                                                              \
-    X(double, probe, 2 * n, "right-hand side of the probe")
-
 /* The band as a problem of multipliers alone. Cholesky solves it several times as fast as LU.
  *
  * The weights are W + R, where a small R > 0 stands for coordinates that were not measured. Displacements x then follow
@@ -54,21 +39,17 @@ typedef struct {
 typedef struct {
     const hf_built_linear *linear;
     int n, half_bandwidth; /* n: 3 n_free rows */
-    HF_SADDLE_DUAL_FIELDS(HF_ARENA_MEMBER)
+    int *start, *cable;    /* [n_node + 1], [2 n_cable] cables of each row */
+    double *block;         /* [n_cable][9] stiffness blocks, scaled */
+    double *push;          /* [n_cable] sigma^2 (dT/dl0)^2, scaled */
+    double *spring;        /* [n_free] springs of loose nodes, scaled */
+    double *weight;        /* [n] W, scaled */
+    double *band, *right;  /* the matrix, then its factor; [HF_SADDLE_PANEL][n] */
+    /* [HF_SADDLE_PANEL][2 n], three multipliers and three displacements of each row. */
+    double *solution, *error;
+    double *probe; /* [2 n] right-hand side of the probe */
     void *memory;
 } hf_saddle_dual;
-
-/* The arrays of hf_saddle `to`, for n rows of the band, n_border of the border, and n_attached attached coordinates. */
-#define HF_SADDLE_FIELDS(X)                                                                                            \
-    X(double, general, n *(3 * (size_t)to->half_bandwidth + 1), "the band, then its factor")                           \
-    X(int, pivot, n, "row exchanges of the band")                                                                      \
-    X(double, column, border *n, "[n_border][n_band] columns of the border")                                           \
-    X(double, solved, border *n, "[n_border][n_band] the solutions of the band for them")                              \
-    X(double, corner, border *border, "[n_border][n_border] corner")                                                   \
-    X(double, dense, border *border, "[n_border][n_border] its factor")                                                \
-    X(double, flex, attached *attached, "[n_attached][n_attached] scaled flexibility")                                 \
-    X(double, work, (1 + HF_SADDLE_PANEL) * border, "[1 + HF_SADDLE_PANEL][n_border] scratch, then right-hand sides")  \
-    X(int, dense_pivot, border, "row exchanges of the corner")
 
 typedef struct {
     const hf_built_linear *linear;
@@ -83,7 +64,13 @@ typedef struct {
     double part;                  /* factor of the weights, 1/(1 + damping) */
     int n_factor;                 /* linear->n_factor at the last factorisation; 0: there is no factor */
     double size_m, force_m_per_N; /* units of displacements and multipliers; they scale the entries to about 1 */
-    HF_SADDLE_FIELDS(HF_ARENA_MEMBER)
+    double *general;              /* the band, then its factor */
+    int *pivot;                   /* [n_band] row exchanges of the band */
+    double *column, *solved;      /* [n_border][n_band] columns of the border, and the solutions of the band for them */
+    /* [n_border][n_border] corner; [n_border][n_border] its factor; [n_attached][n_attached] scaled flexibility. */
+    double *corner, *dense, *flex;
+    double *work;     /* [1 + HF_SADDLE_PANEL][n_border] scratch, then right-hand sides */
+    int *dense_pivot; /* [n_border] row exchanges of the corner */
     void *block;
 } hf_saddle;
 
