@@ -12,7 +12,6 @@
 #include <hifdm/metrics.h>
 
 #include <assert.h>
-#include <stdint.h>
 #include <string.h>
 
 /* ---- the nominal net ---- */

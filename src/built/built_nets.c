@@ -10,7 +10,6 @@
 
 #include "base/arena.h"
 
-#include <math.h>
 #include <string.h>
 
 /* ---- working memory of a thread ---- */

@@ -11,7 +11,6 @@
 #pragma once
 
 #include "built/errors.h"
-#include <hifdm/built_batch.h>
 #include <hifdm/objectives.h>
 
 typedef struct {

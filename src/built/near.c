@@ -22,7 +22,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
 /* Steps before a lane must contract (hf_chord_goes_on). A net that does not is solved by Newton's method, which finds

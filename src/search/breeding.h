@@ -9,7 +9,6 @@
 #include "base/random.h"
 
 #include <hifdm/population.h>
-#include <stdbool.h>
 
 /* The state of an optimiser begins with it. */
 typedef struct {

@@ -12,7 +12,6 @@
 #include "search/parallel.h"
 #include "solve/newton_matrix.h"
 
-#include <math.h>
 #include <string.h>
 
 /* ---- layout ---- */

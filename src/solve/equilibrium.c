@@ -17,7 +17,6 @@
 #include "solve/joint.h"
 #include "solve/newton.h"
 
-#include <string.h>
 
 #define FIRST_BLOCK 6  /* iterations of hf_form_find before Newton's method; the tests pass with 2 and 20 */
 #define NEWTON_MAX 30  /* maximum Newton steps after them */

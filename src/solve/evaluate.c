@@ -15,7 +15,6 @@
 #include "solve/equilibrium.h"
 #include "solve/limits.h"
 #include "solve/loose.h"
-#include <hifdm/metrics.h>
 
 #include <math.h>
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "solve/flexibility.h"
-#include <hifdm/formfind.h>
 
 /* A cable at the precise shape. HF_BOUND_ITEMS (workspace.h) has room for the arrays below. The moving rows are the
  * free nodes and, on a truss, the attachments; n_moving is their number. */

@@ -2,8 +2,6 @@
  * fields, members, summary. */
 #include "store/layout.h"
 
-#include <hifdm/formfind.h>
-#include <hifdm/population.h>
 #include <hifdm/scene.h>
 #include <hifdm/store.h>
 

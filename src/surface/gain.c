@@ -13,7 +13,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 #define ORDER_LN (-11.5) /* logarithm of the quadrature error, 1e-5 */
 #define ERROR_PHASE 0.5  /* rad, by which errors of the shape may increase half of the phase across a facet */
