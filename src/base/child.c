@@ -77,10 +77,8 @@ static bool is_from_outside(int number, const struct rusage *used)
 hf_child_end hf_child_wait(pid_t child)
 {
     int status;
-    pid_t ended;
     struct rusage used;
-    HF_UNINTERRUPTED(ended, wait4(child, &status, 0, &used));
-    if (ended != child) return (hf_child_end){.is_known = false};
+    if (HF_UNINTERRUPTED(wait4(child, &status, 0, &used)) != child) return (hf_child_end){.is_known = false};
     if (!WIFSIGNALED(status)) return (hf_child_end){.is_known = true, .exit_status = WEXITSTATUS(status)};
     int number = WTERMSIG(status);
     return (hf_child_end){true, -1, number, is_from_outside(number, &used)};
@@ -145,8 +143,7 @@ static void serve_orders(int by)
         signal(of_parent[i], SIG_IGN);
     signal(SIGCHLD, SIG_DFL); /* where it is ignored, nobody learns how a child ended */
     for (;;) {
-        ssize_t n;
-        HF_UNINTERRUPTED(n, recv(by, &o, sizeof o, 0));
+        ssize_t n = HF_UNINTERRUPTED(recv(by, &o, sizeof o, 0));
         if (n <= (ssize_t)offsetof(order, text)) _exit(0);
         hf_child_end end = obey(&o);
         if (send(by, &end, sizeof end, MSG_NOSIGNAL) != (ssize_t)sizeof end) _exit(0);
@@ -191,11 +188,8 @@ void hf_child_server_end(void)
  * server has ended. */
 static bool exchange(const order *o, size_t size, hf_child_end *end)
 {
-    ssize_t n;
-    HF_UNINTERRUPTED(n, send(server_socket, o, size, MSG_NOSIGNAL));
-    if (n != (ssize_t)size) return false;
-    HF_UNINTERRUPTED(n, recv(server_socket, end, sizeof *end, 0));
-    return n == (ssize_t)sizeof *end;
+    return HF_UNINTERRUPTED(send(server_socket, o, size, MSG_NOSIGNAL)) == (ssize_t)size &&
+           HF_UNINTERRUPTED(recv(server_socket, end, sizeof *end, 0)) == (ssize_t)sizeof *end;
 }
 
 bool hf_child_ask(hf_child_work *work, const char *text, hf_child_end *end)

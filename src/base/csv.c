@@ -78,10 +78,9 @@ static bool needs_guard(const char *text)
 
 /* ---- splitting lines ---- */
 
+/* Removes blanks at the end of a field. */
 static char *trim(char *field)
 {
-    while (*field == ' ' || *field == '\t')
-        field++;
     size_t n = strlen(field);
     while (n && (field[n - 1] == ' ' || field[n - 1] == '\t'))
         field[--n] = '\0';
@@ -103,8 +102,7 @@ static char *unquote(char **p)
     if (*from != '"') return NULL;
     *to = '\0';
     *p = from + 1;
-    while (**p == ' ' || **p == '\t')
-        ++*p;
+    *p += strspn(*p, " \t");
     return **p == '\0' || **p == ',' ? start : NULL;
 }
 
@@ -115,8 +113,7 @@ static int split(char *line, char **field, int column_max)
     int n = 0;
     for (char *p = line;;) {
         if (n == column_max) return column_max + 1;
-        while (*p == ' ' || *p == '\t')
-            p++;
+        p += strspn(p, " \t");
         char *start = p;
         int quoted = *p == '"';
         if (quoted) {

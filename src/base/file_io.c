@@ -13,9 +13,7 @@
 
 int hf_file_io_open(const char *name, int flags)
 {
-    int file;
-    HF_UNINTERRUPTED(file, open(name, flags, 0666));
-    return file;
+    return HF_UNINTERRUPTED(open(name, flags, 0666));
 }
 
 int hf_file_io_open_ordinary(const char *name, off_t *size)
@@ -45,12 +43,12 @@ static bool is_stuck(ssize_t done)
 }
 
 /* Writes to the present position of the file for at = HERE, otherwise to `at`. */
-static int write_whole(int file, const char *from, size_t n, off_t at)
+int hf_file_io_write_at(int file, const void *from, size_t n, off_t at)
 {
+    const char *bytes = from;
     for (size_t done = 0; done < n;) {
-        ssize_t now;
-        HF_UNINTERRUPTED(now, at == HERE ? write(file, from + done, n - done)
-                                         : pwrite(file, from + done, n - done, at + (off_t)done));
+        ssize_t now = HF_UNINTERRUPTED(at == HERE ? write(file, bytes + done, n - done)
+                                                  : pwrite(file, bytes + done, n - done, at + (off_t)done));
         if (is_stuck(now)) return -1;
         done += (size_t)now;
     }
@@ -59,12 +57,7 @@ static int write_whole(int file, const char *from, size_t n, off_t at)
 
 int hf_file_io_write(int file, const void *from, size_t n)
 {
-    return write_whole(file, from, n, HERE);
-}
-
-int hf_file_io_write_at(int file, const void *from, size_t n, off_t at)
-{
-    return write_whole(file, from, n, at);
+    return hf_file_io_write_at(file, from, n, HERE);
 }
 
 int hf_file_io_write_pieces(int file, struct iovec *piece, int n)
@@ -74,8 +67,7 @@ int hf_file_io_write_pieces(int file, struct iovec *piece, int n)
             piece++, n--;
             continue;
         }
-        ssize_t now;
-        HF_UNINTERRUPTED(now, writev(file, piece, n));
+        ssize_t now = HF_UNINTERRUPTED(writev(file, piece, n));
         if (is_stuck(now)) return -1;
         for (size_t left = (size_t)now; left > 0;) {
             size_t taken = left < piece->iov_len ? left : piece->iov_len;
@@ -89,13 +81,13 @@ int hf_file_io_write_pieces(int file, struct iovec *piece, int n)
 }
 
 /* Reads from the present position of the file for at = HERE, otherwise from `at`. */
-static ssize_t read_whole(int file, char *to, size_t n, off_t at)
+ssize_t hf_file_io_read_at(int file, void *to, size_t n, off_t at)
 {
+    char *bytes = to;
     size_t done = 0;
     while (done < n) {
-        ssize_t now;
-        HF_UNINTERRUPTED(now, at == HERE ? read(file, to + done, n - done)
-                                         : pread(file, to + done, n - done, at + (off_t)done));
+        ssize_t now = HF_UNINTERRUPTED(at == HERE ? read(file, bytes + done, n - done)
+                                                  : pread(file, bytes + done, n - done, at + (off_t)done));
         if (now < 0) return -1;
         if (now == 0) break;
         done += (size_t)now;
@@ -105,27 +97,19 @@ static ssize_t read_whole(int file, char *to, size_t n, off_t at)
 
 ssize_t hf_file_io_read(int file, void *to, size_t n)
 {
-    return read_whole(file, to, n, HERE);
-}
-
-ssize_t hf_file_io_read_at(int file, void *to, size_t n, off_t at)
-{
-    return read_whole(file, to, n, at);
+    return hf_file_io_read_at(file, to, n, HERE);
 }
 
 int hf_file_io_cut(int file, off_t size)
 {
-    int result;
-    HF_UNINTERRUPTED(result, ftruncate(file, size));
-    return result;
+    return HF_UNINTERRUPTED(ftruncate(file, size));
 }
 
 /* ---- the disk ---- */
 
 int hf_file_io_sync(int file, bool content_alone)
 {
-    int result;
-    HF_UNINTERRUPTED(result, content_alone ? fdatasync(file) : fsync(file));
+    int result = HF_UNINTERRUPTED(content_alone ? fdatasync(file) : fsync(file));
     return result == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP ? 0 : -1;
 }
 
@@ -145,17 +129,13 @@ static hf_lock lock_of_result(int result)
 
 hf_lock hf_file_io_lock(int file)
 {
-    int result;
-    HF_UNINTERRUPTED(result, flock(file, LOCK_EX | LOCK_NB));
-    return lock_of_result(result);
+    return lock_of_result(HF_UNINTERRUPTED(flock(file, LOCK_EX | LOCK_NB)));
 }
 
 static int set_byte(int file, off_t at, short type)
 {
     struct flock lock = {.l_type = type, .l_whence = SEEK_SET, .l_start = at, .l_len = 1};
-    int result;
-    HF_UNINTERRUPTED(result, fcntl(file, F_SETLK, &lock));
-    return result;
+    return HF_UNINTERRUPTED(fcntl(file, F_SETLK, &lock));
 }
 
 hf_lock hf_file_io_lock_byte(int file, off_t at)
@@ -183,22 +163,8 @@ bool hf_file_io_await_room(int file, int grace_ms)
 
 hf_status hf_file_io_fault(int why, hf_status otherwise)
 {
-    switch (why) {
-    case ENOENT:
-    case ENOTDIR:
-    case EISDIR:
-    case EACCES:
-    case EPERM:
-    case ELOOP:
-    case ENAMETOOLONG:
-    case ENXIO:
-    case ENODEV:
-        return otherwise;
-    case ENOMEM:
-        return HF_NO_MEMORY;
-    case EINTR:
-        return HF_INTERRUPTED;
-    default:
-        return HF_IO;
-    }
+    static const int of_name[] = {ENOENT, ENOTDIR, EISDIR, EACCES, EPERM, ELOOP, ENAMETOOLONG, ENXIO, ENODEV};
+    for (size_t i = 0; i < sizeof of_name / sizeof *of_name; i++)
+        if (why == of_name[i]) return otherwise;
+    return why == ENOMEM ? HF_NO_MEMORY : why == EINTR ? HF_INTERRUPTED : HF_IO;
 }

@@ -11,11 +11,15 @@
 #include <sys/types.h>
 #include <sys/uio.h>
 
-/* Repeats a system call while a signal interrupts it. */
-#define HF_UNINTERRUPTED(result, call)                                                                                 \
-    do                                                                                                                 \
-        (result) = (call);                                                                                             \
-    while ((result) < 0 && errno == EINTR)
+/* Repeats a system call while a signal interrupts it. The value is its result. */
+#define HF_UNINTERRUPTED(call)                                                                                         \
+    __extension__({                                                                                                    \
+        __typeof__(call) result_;                                                                                      \
+        do                                                                                                             \
+            result_ = (call);                                                                                          \
+        while (result_ < 0 && errno == EINTR);                                                                         \
+        result_;                                                                                                       \
+    })
 
 int hf_file_io_open(const char *name, int flags); /* open(2), mode 0666 for new files; returns the descriptor */
 

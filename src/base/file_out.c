@@ -433,16 +433,6 @@ hf_status hf_file_out_set_end(hf_file_out_set *set, hf_status status, hf_message
 
 /* ---- files without a name ---- */
 
-static int scratch_of_system(void)
-{
-    FILE *made = tmpfile();
-    if (!made) return -1;
-    int file = fcntl(fileno(made), F_DUPFD_CLOEXEC, 0), why = errno;
-    fclose(made);
-    errno = why;
-    return file;
-}
-
 /* Makes a file and removes its name at once, for file systems that have no files without a name. */
 static int scratch_with_name(const char *beside)
 {
@@ -457,7 +447,7 @@ static int scratch_with_name(const char *beside)
 int hf_file_out_scratch(const char *beside)
 {
     char folder[HF_FILE_OUT_SIZE];
-    if (!beside) return scratch_of_system();
+    if (!beside) beside = P_tmpdir "/hifdm";
     if (!hf_path_folder(beside, folder, sizeof folder)) {
         errno = ENAMETOOLONG;
         return -1;

@@ -216,12 +216,7 @@ INLINE void lanes_store(double to[HF_LANES], lanes a)
 /* Returns the lanes of a where the condition holds, and those of b elsewhere. */
 INLINE lanes lanes_choose(lanes_where condition, lanes a, lanes b)
 {
-    lanes_where x, y;
-    memcpy(&x, &a, sizeof x);
-    memcpy(&y, &b, sizeof y);
-    x = (x & condition) | (y & ~condition);
-    memcpy(&a, &x, sizeof a);
-    return a;
+    return (lanes)((condition & (lanes_where)a) | (~condition & (lanes_where)b));
 }
 
 /* Returns the square roots. C has no vector form of sqrt; the compiler makes vector instructions from the loop. */

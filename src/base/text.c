@@ -71,12 +71,7 @@ hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_
     return HF_OK;
 }
 
-static const char *skip_digits(const char *p)
-{
-    while (isdigit((unsigned char)*p))
-        p++;
-    return p;
-}
+#define DIGITS "0123456789"
 
 /* Converts like strtod(3) in the C locale, whatever locale the calling program has set. Another locale may use
  * a decimal comma. */
@@ -102,11 +97,11 @@ bool hf_text_decimal(const char *text, int decimals, double *value)
     char scaled[DIGITS_MAX + 32];
     if (*p == '+' || *p == '-') p++;
     whole = p;
-    p = skip_digits(p);
+    p += strspn(p, DIGITS);
     size_t n_digit = (size_t)(p - whole);
     if (*p == '.') {
         fraction = ++p;
-        p = skip_digits(p);
+        p += strspn(p, DIGITS);
         n_digit += (size_t)(p - fraction);
     }
     if (n_digit == 0) return false;
@@ -115,7 +110,7 @@ bool hf_text_decimal(const char *text, int decimals, double *value)
         p++;
         if (*p == '+' || *p == '-') p++;
         if (!isdigit((unsigned char)*p)) return false;
-        p = skip_digits(p);
+        p += strspn(p, DIGITS);
     }
     if (*p) return false;
     if (decimals != 0) {
@@ -131,7 +126,7 @@ bool hf_text_decimal(const char *text, int decimals, double *value)
 
 bool hf_text_uint64(const char *text, uint64_t *value)
 {
-    if (!isdigit((unsigned char)*text) || *skip_digits(text)) return false;
+    if (!isdigit((unsigned char)*text) || text[strspn(text, DIGITS)]) return false;
     errno = 0;
     unsigned long long number = strtoull(text, NULL, 10);
     *value = number;
