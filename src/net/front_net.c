@@ -76,16 +76,9 @@ static void put_cables(const hf_front_net *f, const double EA_N[2], int first, i
  * length is tension_N. */
 static double tie_target(const hf_double_net *d, double length, double EA_N)
 {
-    switch (d->law) {
-    case HF_LAW_TENSION:
-        return d->tension_N;
-    case HF_LAW_FORCE_DENSITY:
-        return d->tension_N / length;
-    case HF_LAW_ELASTIC:
-        return length / (1 + d->tension_N / EA_N);
-    default:
-        return length;
-    }
+    if (d->law == HF_LAW_TENSION) return d->tension_N;
+    if (d->law == HF_LAW_FORCE_DENSITY) return d->tension_N / length;
+    return d->law == HF_LAW_ELASTIC ? length / (1 + d->tension_N / EA_N) : length;
 }
 
 /* Fills the rear half of the scene and adds the ties. */

@@ -200,14 +200,8 @@ static bool is_on_perimeter(const grid *g, int i, int j)
 static bool is_held(const grid *g, int i, int j)
 {
     bool on_rib = j % g->c->cells_per_module[1] == 0;
-    switch (g->c->supports) {
-    case HF_SUPPORTS_RIBS:
-        return on_rib;
-    case HF_SUPPORTS_PERIMETER:
-        return is_on_perimeter(g, i, j);
-    default:
-        return on_rib && i % g->c->cells_per_module[0] == 0;
-    }
+    if (g->c->supports == HF_SUPPORTS_PERIMETER) return is_on_perimeter(g, i, j);
+    return on_rib && (g->c->supports == HF_SUPPORTS_RIBS || i % g->c->cells_per_module[0] == 0);
 }
 
 static bool is_tied(const grid *g, int i, int j)

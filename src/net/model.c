@@ -359,15 +359,8 @@ void hf_model_variable_name(const hf_model *m, const hf_scene *scene, int k, cha
 
 const char *hf_model_variable_unit(const hf_model *m, int k)
 {
-    switch (hf_model_vary(m, k)) {
-    case HF_VARY_PRETENSION:
-    case HF_VARY_TENSION:
-        return "N";
-    case HF_VARY_FORCE_DENSITY:
-        return "N/m";
-    default:
-        return "m";
-    }
+    hf_vary vary = hf_model_vary(m, k);
+    return vary == HF_VARY_PRETENSION || vary == HF_VARY_TENSION ? "N" : vary == HF_VARY_FORCE_DENSITY ? "N/m" : "m";
 }
 
 /* ---- build ---- */

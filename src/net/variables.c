@@ -227,29 +227,13 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
 void hf_variables_read(const hf_model *m, const double *q_N_per_m, const double *tension_N, const double *length_m,
                        double *value)
 {
-    for (int k = 0; k < m->n_variable; k++) {
-        int e = m->variable_cable[k];
-        switch (hf_model_vary(m, k)) {
-        case HF_VARY_PRETENSION:
-        case HF_VARY_TENSION:
-            value[k] = tension_N[e];
-            break;
-        case HF_VARY_FORCE_DENSITY:
-            value[k] = q_N_per_m[e];
-            break;
-        case HF_VARY_LENGTH:
-            value[k] = length_m[e];
-            break;
-        case HF_VARY_UNSTRESSED_LENGTH:
-            value[k] = m->target[e];
-            break;
-        case HF_VARY_SUPPORT_Z:
-        case HF_VARY_SUPPORT_NORMAL:
-        case HF_VARY_SUPPORT_XYZ:
-            value[k] = 0;
-            break;
-        }
-    }
+    const double *const of_cable[] = {[HF_VARY_PRETENSION] = tension_N,
+                                      [HF_VARY_TENSION] = tension_N,
+                                      [HF_VARY_FORCE_DENSITY] = q_N_per_m,
+                                      [HF_VARY_LENGTH] = length_m,
+                                      [HF_VARY_UNSTRESSED_LENGTH] = m->target};
+    for (int k = 0; k < m->n_variable; k++) /* supports begin at 0 */
+        value[k] = m->variable_cable[k] < 0 ? 0 : of_cable[hf_model_vary(m, k)][m->variable_cable[k]];
 }
 
 static double within(double value, double low, double high)
