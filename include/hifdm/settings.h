@@ -91,26 +91,37 @@ typedef enum {
 } hf_limit_kind;
 
 /* Words of the choices in a case file, indexed by the enumerations of this header. The last entry of each array is
- * NULL. Other choices have their words in their rows of the table of keys (config.h). */
-extern const char *const hf_method_word[6];
-extern const char *const hf_stop_rule_word[3];
-extern const char *const hf_rule_word[4];
-extern const char *const hf_solver_word[5];
+ * NULL. Other choices have their words in their rows of the table of keys (config.h). hf_figure_kind_unit contains the
+ * units of the figures, without a NULL; "" means dimensionless. hf_adjust_figure_word contains the words of
+ * adjust.figure, from HF_FIGURE_PSI to HF_FIGURE_FACETS. The lists are rows X(array, size, words ...). */
+#define HF_SETTINGS_WORDS(X)                                                                                           \
+    X(hf_method_word, 6, "hifdm", "iterative_fdm", "fdm", "newton", "auto")                                            \
+    X(hf_stop_rule_word, 3, "residual", "rms_change")                                                                  \
+    X(hf_rule_word, 4, "force_density", "tension", "seeded")                                                           \
+    X(hf_solver_word, 5, "auto", "chord", "newton", "fixed_point")                                                     \
+    X(hf_keep_word, 4, "all", "best", "every")                                                                         \
+    X(hf_symmetry_word, 6, "none", "x", "y", "xy", "auto")                                                             \
+    X(hf_nodes_word, 5, "all", "support", "inner", "edge")                                                             \
+    X(hf_part_word, 11, "all", "net", "truss", "bud", "mbug", "abug", "other", "longeron", "vertical", "diagonal")     \
+    X(hf_surface_kind_word, 4, "auto", "parabolic_cylinder", "paraboloid")                                             \
+    X(hf_feed_word, 5, "auto", "point", "line", "plane_wave")                                                          \
+    X(hf_coupling_scheme_word, 4, "accelerated", "plain", "auto")                                                      \
+    X(hf_vary_word, 8, "tension", "force_density", "length", "unstressed_length", "support_z", "support_normal",       \
+      "support_xyz")                                                                                                   \
+    X(hf_figure_kind_word, 12, "psi", "surface", "facets", "tension", "length", "evenness", "pull", "deflection",      \
+      "mass", "ratio", "gain")                                                                                         \
+    X(hf_figure_kind_unit, 11, "m", "m", "m", "N", "m", "", "N", "m", "kg", "", "")                                    \
+    X(hf_over_word, 3, "design", "samples")                                                                            \
+    X(hf_take_word, 3, "mean", "worst")                                                                                \
+    X(hf_limit_word, 4, "tension", "ratio", "deflection")                                                              \
+    X(hf_adjust_figure_word, 4, "psi", "surface", "facets")                                                            \
+    X(hf_distribution_word, 3, "normal", "uniform")                                                                    \
+    X(hf_sampling_word, 3, "random", "sobol")                                                                          \
+    X(hf_aim_word, 3, "target_positions", "design")
+#define HF_SETTINGS_EXTERN(name, size, ...) extern const char *const name[size];
+HF_SETTINGS_WORDS(HF_SETTINGS_EXTERN)
+#undef HF_SETTINGS_EXTERN
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
-extern const char *const hf_keep_word[4];
-extern const char *const hf_symmetry_word[6];
-extern const char *const hf_nodes_word[5];
-extern const char *const hf_part_word[11];
-extern const char *const hf_surface_kind_word[4];
-extern const char *const hf_feed_word[5];
-extern const char *const hf_coupling_scheme_word[4];
-extern const char *const hf_vary_word[8];
-extern const char *const hf_figure_kind_word[12];
-extern const char *const hf_figure_kind_unit[11]; /* units of the figures; "": dimensionless */
-extern const char *const hf_over_word[3];
-extern const char *const hf_take_word[3];
-extern const char *const hf_limit_word[4];
-extern const char *const hf_adjust_figure_word[4]; /* words of adjust.figure, from HF_FIGURE_PSI to HF_FIGURE_FACETS */
 
 /* Size in bytes of the path of a case, a study, or a table of a net or truss. A longer path is rejected. */
 #define HF_PATH_SIZE 1024
@@ -122,10 +133,7 @@ typedef struct {
     char sha256[65];         /* hexadecimal digest of the design */
 } hf_front_origin;
 
-/* Words of hf_distribution, hf_sampling and hf_tolerance_measure in a case file. The last entry of each array is
- * NULL. */
-extern const char *const hf_distribution_word[3];
-extern const char *const hf_sampling_word[3];
+/* Words of hf_tolerance_measure in a case file. The last entry is NULL. */
 extern const char *const hf_tolerance_measure_word[];
 
 #define HF_SET_NAME_SIZE 64 /* size in bytes of the name of a set of cables, including its NUL */
@@ -279,7 +287,6 @@ typedef struct {
 /* Positions from which psi is measured when an as-built net is adjusted: the target positions, or the positions of the
  * design. */
 typedef enum { HF_AIM_TARGET, HF_AIM_DESIGN } hf_aim;
-extern const char *const hf_aim_word[3]; /* the last entry is NULL */
 
 /* Settings of the turnbuckles of an as-built net (section adjust). Some cables of the set are lengthened or shortened
  * by whole steps within a range to reduce the figure of the net. */
