@@ -41,15 +41,11 @@ typedef struct {
     void *block;          /* owned memory behind the arrays */
 } hf_carrier_state;
 
-/* Solves the truss under the forces force_N [n_attachment][3] on its attachments. Returns HF_OK or HF_NO_MEMORY. Call
- * hf_carrier_state_free even after a failure. */
-hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state);
-
 /* Solves the truss under forces on its attachments and under its own loads, such as temperature and weight. Either
  * force_N [n_attachment][3] or `own` may be NULL. Returns HF_OK, HF_NO_MEMORY, or HF_MECHANISM if a moment of `own`
  * acts at a node where nothing resists rotation. Call hf_carrier_state_free even after a failure. */
-hf_status hf_carrier_load_own(const hf_carrier *carrier, const double *force_N, const hf_frame_load *own,
-                              hf_carrier_state *state);
+hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, const hf_frame_load *own,
+                          hf_carrier_state *state);
 
 /* Adds the weight of members and hinges under the acceleration gravity_m_per_s2 [3] to force [n_node][6], in N. Half of
  * the weight of a member acts at each end. The bending of a member under its own weight is neglected. */

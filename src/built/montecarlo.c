@@ -120,16 +120,16 @@ static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
 /* Measures the far-field loss of a sample. Pillows whose mesh tension exceeds what a cable can hold have none. */
 static hf_status measure_pattern(const hf_montecarlo *t, const hf_built_shape *is, double *value)
 {
-    hf_arena arena = {0}, sags = {0};
+    hf_arena sags = {0};
     hf_facet_shape shape;
     double pull_ratio = 0, mesh_N_per_m = t->surface->mesh_tension_N_per_m, *sag_m = NULL;
-    hf_status status = hf_facet_shape_take(&t->built->model, is->position_m, is->tension_N, &shape, &arena);
+    hf_status status = hf_facet_shape_take(&t->built->model, is->position_m, is->tension_N, &shape);
     if (status == HF_OK && mesh_N_per_m > 0)
         status = hf_facet_mesh_make_sags(mesh_N_per_m, t->facets, &shape, &sags, &sag_m, &pull_ratio);
     if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST)
         *value = hf_gain_loss_dB(t->beam, &(hf_pattern_surface){t->facets, shape.position_m, sag_m});
     hf_arena_free(&sags);
-    hf_arena_free(&arena);
+    hf_arena_free_block(shape.block);
     return status;
 }
 

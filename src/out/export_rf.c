@@ -45,7 +45,7 @@ static void take(const view *v, int i, hf_facet_mesh *m)
 static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messages *messages)
 {
     const hf_export_stored *s = v->stored;
-    const hf_facet_shape shape = {s->shape.position_m, s->scene.n_cable, s->scene.end, s->shape.tension_N};
+    const hf_facet_shape shape = {s->shape.position_m, s->scene.n_cable, s->scene.end, s->shape.tension_N, NULL};
     char words[64];
     double pull_ratio, mesh_N_per_m = s->summary.surface.mesh_tension_N_per_m, *sag_m;
     if (!(mesh_N_per_m > 0)) return HF_OK;

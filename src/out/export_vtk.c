@@ -218,7 +218,8 @@ static void set_facet_cells(scratch *t)
 static hf_status write_facets(const hf_export_request *o, const char *name, const grid *cables, const hf_shape *found,
                               const hf_summary *summary, const scratch *t, hf_messages *messages)
 {
-    const hf_facet_shape shape = {cables->position_m, cables->n_cell, cables->corner, found ? found->tension_N : NULL};
+    const hf_facet_shape shape = {cables->position_m, cables->n_cell, cables->corner, found ? found->tension_N : NULL,
+                                  NULL};
     const hf_facet_errors *e = &t->facet_error;
     grid g = *cables;
     if (hf_facet_map(&summary->surface, t->facets, &shape, e) != HF_OK)

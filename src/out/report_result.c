@@ -489,7 +489,8 @@ static hf_status map_facets(page *p)
     size_t n = (size_t)p->facets.n_facet;
     HF_TRY(HF_ARENA_ARRAYS(&p->facet_block, HF_ARRAY(error_m, 4 * N_SHAPE * n)));
     for (int i = 0; i < N_SHAPE; i++, error_m += 4 * n) {
-        const hf_facet_shape shape = {p->shape[i].position_m, p->scene.n_cable, p->scene.end, p->shape[i].tension_N};
+        const hf_facet_shape shape = {p->shape[i].position_m, p->scene.n_cable, p->scene.end, p->shape[i].tension_N,
+                                      NULL};
         p->facet_error[i] = (hf_facet_errors){error_m, error_m + n, error_m + 2 * n, error_m + 3 * n};
         if (p->has_shape[i]) HF_TRY(hf_facet_map(&p->summary.surface, &p->facets, &shape, &p->facet_error[i]));
     }

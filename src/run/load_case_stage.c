@@ -60,7 +60,7 @@ static hf_frame_load load_of_truss(const hf_carrier *carrier, const hf_load_case
 static hf_status move_attachments(const hf_carrier *carrier, const hf_frame_load *own, double *move_m)
 {
     hf_carrier_state alone;
-    hf_status status = hf_carrier_load_own(carrier, NULL, own, &alone);
+    hf_status status = hf_carrier_load(carrier, NULL, own, &alone);
     for (int k = 0; status == HF_OK && k < carrier->n_attachment; k++)
         for (int d = 0; d < 3; d++)
             move_m[3 * k + d] = alone.displacement[HF_TRUSS_DOF * carrier->truss_node[k] + d];
@@ -157,7 +157,7 @@ static hf_status run_load_case(const hf_problem *p, const hf_load_case *load_cas
         hf_model loaded = c->built.model;
         loaded.load_N = c->load_N;
         hf_coupling_forces(&loaded, &c->workspace);
-        status = hf_carrier_load_own(&p->carrier, c->workspace.attachment_force_N, &own, &truss);
+        status = hf_carrier_load(&p->carrier, c->workspace.attachment_force_N, &own, &truss);
         if (status != HF_OK) hf_error(messages, status, "out of memory for the forces in the truss");
     }
     if (status == HF_OK) status = keep_shape(p, c, store, has_truss ? &truss : NULL, s, messages);

@@ -109,7 +109,7 @@ static hf_status measure_pattern(hf_run *r, hf_stage stage, const hf_workspace *
                                  hf_messages *messages)
 {
     const hf_problem *p = &r->problem;
-    hf_arena arena = {0}, sags = {0};
+    hf_arena sags = {0};
     hf_facet_shape shape;
     hf_pattern_table table = {0};
     hf_pattern_summary *to = summary->stage[stage].pattern;
@@ -117,7 +117,7 @@ static hf_status measure_pattern(hf_run *r, hf_stage stage, const hf_workspace *
     if (!p->surface.has_pattern) return HF_OK;
     if (!to) to = summary->stage[stage].pattern = calloc(1, sizeof *to);
     if (!to) return hf_error(messages, HF_NO_MEMORY, "out of memory for the far field");
-    hf_status status = hf_facet_shape_take(&p->model, w->position_m, w->tension_N, &shape, &arena);
+    hf_status status = hf_facet_shape_take(&p->model, w->position_m, w->tension_N, &shape);
     if (status == HF_OK && mesh_N_per_m > 0)
         status = hf_facet_mesh_make_sags(mesh_N_per_m, &p->facets, &shape, &sags, &sag_m, &pull_ratio);
     if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST) {
@@ -129,7 +129,7 @@ static hf_status measure_pattern(hf_run *r, hf_stage stage, const hf_workspace *
     if (status == HF_OK && table.block) status = hf_store_pattern(r->store, stage, &table, to, messages);
     hf_pattern_table_free(&table);
     hf_arena_free(&sags);
-    hf_arena_free(&arena);
+    hf_arena_free_block(shape.block);
     return status;
 }
 
@@ -223,7 +223,7 @@ static hf_status load_truss(hf_run *r, hf_workspace *w, hf_messages *messages)
     if (!p->settings.has_truss) return HF_OK;
     hf_carrier_state_free(&r->truss);
     hf_coupling_forces(&p->model, w);
-    hf_status status = hf_carrier_load(&p->carrier, w->attachment_force_N, &r->truss);
+    hf_status status = hf_carrier_load(&p->carrier, w->attachment_force_N, NULL, &r->truss);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
 }
 

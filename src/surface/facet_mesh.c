@@ -330,16 +330,19 @@ void hf_gauss_rule(int n, double *at, double *weight)
 /* ---- a shape ---- */
 
 hf_status hf_facet_shape_take(const hf_model *m, const double *position_m, const double *tension_N,
-                              hf_facet_shape *shape, hf_arena *arena)
+                              hf_facet_shape *shape)
 {
     double *of_node_m;
     int *end;
-    HF_TRY(HF_ARENA_MAKE(arena, (of_node_m = hf_arena_take(arena, 3 * (size_t)m->n_node, sizeof(double)),
-                                 end = hf_arena_take(arena, 2 * (size_t)m->n_cable, sizeof(int)))));
+    HF_TRY(HF_ARENA_ARRAYS(&shape->block, HF_ARRAY(of_node_m, 3 * (size_t)m->n_node),
+                           HF_ARRAY(end, 2 * (size_t)m->n_cable)));
     for (int k = 0; k < 2 * m->n_cable; k++)
         end[k] = m->node_of_row[m->end_row[k]];
     hf_model_positions(m, position_m, of_node_m);
-    *shape = (hf_facet_shape){of_node_m, m->n_cable, end, tension_N};
+    shape->position_m = of_node_m;
+    shape->n_cable = m->n_cable;
+    shape->end = end;
+    shape->tension_N = tension_N;
     return HF_OK;
 }
 
@@ -454,14 +457,12 @@ hf_status hf_facet_measure(const hf_surface_settings *s, const hf_facets *f, con
     hf_status status = take_points(s, f, shape, &q);
     to->mesh_pull_ratio = q.pull_ratio;
     to->pillow_rms_m = q.pillow_rms_m;
-    if (status != HF_OK || !q.has_shape) {
-        hf_arena_free_block(q.block);
-        return status;
+    if (status == HF_OK && q.has_shape) {
+        sum_up(s, &q, to);
+        status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);
     }
-    sum_up(s, &q, to);
-    status = hf_surface_fit_points(s->kind, s->focal_length_m, q.n, q.position_m, q.root_m, &fit);
     hf_arena_free_block(q.block);
-    if (status != HF_OK) return status;
+    if (status != HF_OK || !q.has_shape) return status;
     to->facet_fit_half_path_rms_m = fit.half_path_rms_m;
     to->facet_fit_normal_rms_m = fit.normal_rms_m;
     to->facet_fit_focal_length_m = fit.focal_length_m;

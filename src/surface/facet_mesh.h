@@ -5,18 +5,19 @@
 #include "base/arena.h"
 #include "surface/surface_near.h"
 
-/* A shape in the order of the scene; all pointers are borrowed. */
+/* A shape in the order of the scene. All pointers are borrowed, except those into the block. */
 typedef struct {
     const double *position_m; /* [n_node][3] */
     int n_cable;
     const int *end;          /* [n_cable][2] */
     const double *tension_N; /* [n_cable]; NULL (target positions): facets are flat, even with a mesh tension */
+    void *block;             /* owned memory of hf_facet_shape_take behind position_m and end, or NULL */
 } hf_facet_shape;
 
 /* Makes an hf_facet_shape from a shape of a model, position_m [3][n_node] by row. Borrows tension_N [n_cable]. Returns
- * HF_OK or HF_NO_MEMORY. Free the arena in every case. */
+ * HF_OK or HF_NO_MEMORY. Free the block in every case. */
 hf_status hf_facet_shape_take(const hf_model *model, const double *position_m, const double *tension_N,
-                              hf_facet_shape *shape, hf_arena *arena);
+                              hf_facet_shape *shape);
 
 /* ---- a facet ---- */
 

@@ -107,11 +107,10 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const doubl
 static hf_status measure_facets(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                                 const double *position_m, const double *tension_N, hf_surface_measures *to)
 {
-    hf_arena arena = {0};
     hf_facet_shape shape;
-    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape, &arena);
+    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape);
     if (status == HF_OK) status = hf_facet_measure(s, facets, &shape, to);
-    hf_arena_free(&arena);
+    hf_arena_free_block(shape.block);
     return status;
 }
 

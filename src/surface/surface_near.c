@@ -201,7 +201,6 @@ static hf_status take_nodes(const hf_model *m, const double *position_m, void **
 hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                                  const double *position_m, const double *tension_N, hf_surface_design *design)
 {
-    hf_arena shapes = {0};
     void *block;
     hf_facet_shape shape;
     hf_surface_fit fit;
@@ -215,9 +214,9 @@ hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *
     HF_TRY(status);
     design->nodes = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
     if (!facets || facets->n_facet == 0) return HF_OK;
-    status = hf_facet_shape_take(m, position_m, tension_N, &shape, &shapes);
+    status = hf_facet_shape_take(m, position_m, tension_N, &shape);
     if (status == HF_OK) status = hf_facet_fit(s, facets, &shape, &fit, &parameters);
-    hf_arena_free(&shapes);
+    hf_arena_free_block(shape.block);
     HF_TRY(status);
     design->facets = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
     return HF_OK;
@@ -251,14 +250,13 @@ hf_status hf_surface_measure_near(const hf_surface_design *design, const hf_surf
                                   const hf_facets *facets, const hf_model *m, const double *position_m,
                                   const double *tension_N, hf_surface_paths *to)
 {
-    hf_arena arena = {0};
     hf_facet_shape shape;
     *to = (hf_surface_paths){NAN, NAN, NAN, NAN};
     HF_TRY(measure_nodes(design, s, m, position_m, to));
     if (!facets || facets->n_facet == 0) return HF_OK;
-    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape, &arena);
+    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape);
     if (status == HF_OK)
         status = hf_facet_measure_near(&design->facets, s, facets, &shape, &to->facets_m, &to->facets_fit_m);
-    hf_arena_free(&arena);
+    hf_arena_free_block(shape.block);
     return status;
 }

@@ -47,8 +47,7 @@ void hf_carrier_free(hf_carrier *carrier)
     *carrier = (hf_carrier){0};
 }
 
-hf_status hf_carrier_load_own(const hf_carrier *c, const double *force_N, const hf_frame_load *own,
-                              hf_carrier_state *state)
+hf_status hf_carrier_load(const hf_carrier *c, const double *force_N, const hf_frame_load *own, hf_carrier_state *state)
 {
     double *force, *work;
     int bad_dof;
@@ -69,11 +68,6 @@ hf_status hf_carrier_load_own(const hf_carrier *c, const double *force_N, const 
     hf_frame_reactions(&c->frame, &load, state->displacement, state->reaction, NULL);
     hf_frame_member_forces(&c->frame, &load, state->displacement, state->end_force);
     return HF_OK;
-}
-
-hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, hf_carrier_state *state)
-{
-    return hf_carrier_load_own(carrier, force_N, NULL, state);
 }
 
 void hf_carrier_add_weight(const hf_carrier *c, const double gravity_m_per_s2[3], double *force)

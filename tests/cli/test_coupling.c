@@ -60,7 +60,7 @@ static void load_stored_pull(const char *path, const char *const *overrides, int
     double *stored = read_doubles(file, "/truss/node/displacement", &n_stored);
     ck_assert_int_eq(n_force, 3 * carrier.n_attachment);
     ck_assert_int_eq(n_stored, 6 * carrier.truss.n_node);
-    ck_assert_int_eq(hf_carrier_load(&carrier, force_N, &state), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, force_N, NULL, &state), HF_OK);
     for (int k = 0; k < n_stored; k++)
         largest = fmax(largest, fabs(state.displacement[k]));
     for (int k = 0; k < n_stored; k++)

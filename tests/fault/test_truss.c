@@ -75,7 +75,7 @@ START_TEST(loading_a_carrier)
     load(&c, &scene, 0);
     ck_assert_int_eq(hf_config_carrier(&c, &scene, &carrier, &messages), HF_OK);
     fail_allocation_at(1);
-    hf_status status = hf_carrier_load(&carrier, force, &state);
+    hf_status status = hf_carrier_load(&carrier, force, NULL, &state);
     ck_assert(end_allocation_failure());
     ck_assert_int_eq(status, HF_NO_MEMORY);
     hf_carrier_state_free(&state);
@@ -100,7 +100,7 @@ START_TEST(storing_and_reading)
         force[k] = 2.385 * k;
     hf_store_quiet();
     ck_assert_int_eq(hf_config_carrier(&c, &scene, &carrier, &messages), HF_OK);
-    ck_assert_int_eq(hf_carrier_load(&carrier, force, &state), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, force, NULL, &state), HF_OK);
     const char *path = temp_path("t.h5");
     bool failed = true;
     long n;

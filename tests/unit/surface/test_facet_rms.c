@@ -171,7 +171,7 @@ START_TEST(mesh_makes_the_error_grow)
     double *value = malloc(4 * n * sizeof *value), *tension_N = malloc((size_t)net.scene.n_cable * sizeof *tension_N);
     for (int e = 0; e < net.scene.n_cable; e++)
         tension_N[e] = 10;
-    const hf_facet_shape shape = {net.scene.position_m, net.scene.n_cable, net.scene.end, tension_N};
+    const hf_facet_shape shape = {net.scene.position_m, net.scene.n_cable, net.scene.end, tension_N, NULL};
     const hf_facet_errors e = {value, value + n, value + 2 * n, value + 3 * n};
     int middle = 0, centre = index_of(RINGS, 0, 0);
     while (facets.corner[4 * middle] != centre)
@@ -210,7 +210,7 @@ START_TEST(facets_near_those_of_the_design)
     double *tension_N = malloc((size_t)net.scene.n_cable * sizeof *tension_N);
     for (int e = 0; e < net.scene.n_cable; e++)
         tension_N[e] = 10;
-    const hf_facet_shape shape = {net.scene.position_m, net.scene.n_cable, net.scene.end, tension_N};
+    const hf_facet_shape shape = {net.scene.position_m, net.scene.n_cable, net.scene.end, tension_N, NULL};
     s.mesh_tension_N_per_m = _i ? 0.1 : 0;
     ck_assert_int_eq(hf_facet_fit(&s, &facets, &shape, &fit, &parameters), HF_OK);
     hf_surface_pose pose = hf_surface_pose_of(s.kind, s.focal_length_m, &fit, &parameters);

@@ -225,7 +225,7 @@ START_TEST(what_the_net_is_given)
             sum[d] += force[3 * k + d] = rng_uniform(&rng, -20, 20);
         }
     }
-    ck_assert_int_eq(hf_carrier_load(&carrier, force, &state), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, force, NULL, &state), HF_OK);
     for (int i = 0; i < 108; i++)
         for (int j = 0; j < 108; j++)
             most = fmax(most, fabs(carrier.flexibility_m_per_N[108 * i + j]));
@@ -268,7 +268,7 @@ START_TEST(own_loads_add_up)
     for (int k = 0; k < 108; k++)
         pull[k] = rng_uniform(&rng, -20, 20);
     hf_carrier_add_weight(&carrier, g, force);
-    ck_assert_int_eq(hf_carrier_load_own(&carrier, NULL, &(hf_frame_load){.force = force}, &own), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, NULL, &(hf_frame_load){.force = force}, &own), HF_OK);
     for (size_t i = 0; i < n; i++)
         if (i % 6 < 3) sum[i % 6] -= own.reaction[i];
     for (int d = 0; d < 3; d++)
@@ -279,9 +279,9 @@ START_TEST(own_loads_add_up)
         rise_K[e] = rng_uniform(&rng, -100, 100);
     }
     const hf_frame_load load = {.force = force, .temperature_K = rise_K};
-    ck_assert_int_eq(hf_carrier_load_own(&carrier, NULL, &load, &own), HF_OK);
-    ck_assert_int_eq(hf_carrier_load(&carrier, pull, &net), HF_OK);
-    ck_assert_int_eq(hf_carrier_load_own(&carrier, pull, &load, &both), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, NULL, &load, &own), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, pull, NULL, &net), HF_OK);
+    ck_assert_int_eq(hf_carrier_load(&carrier, pull, &load, &both), HF_OK);
     for (size_t i = 0; i < n; i++)
         most = fmax(most, fabs(both.displacement[i]));
     for (size_t i = 0; i < n; i++)
