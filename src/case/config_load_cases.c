@@ -86,8 +86,8 @@ static hf_status heat_cables(const maker *q, int row)
     if (n == 0) return HF_BAD_CASE;
     if (n_wild)
         hf_error(q->messages, HF_BAD_CASE,
-                 "%s: %d cables would change by more than %g times their lengths, such as '%s' by %.3g times at %.6g "
-                 "K. Check this temperature and expansion_per_K",
+                 "%s: the lengths of %d cables would change by more than the fraction %g, such as '%s' by %.3g at "
+                 "%.6g K. Check this temperature and expansion_per_K",
                  hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_wild, LARGEST_STRAIN,
                  scene->cable_id[wild], q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild],
                  load_case->rise_K[wild]);

@@ -52,8 +52,8 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
         least_Hz = fmin(least_Hz, at->value[k]);
         if (terms <= PATTERN_TERMS_MOST) continue;
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: at %g GHz the far field has %.3g quadrature points times %d angles: %.2g terms, but the "
-                        "maximum is %g; lower the frequency, or narrow surface.pattern.theta_deg",
+                        "%s: at %g GHz the far field needs %.3g quadrature points times %d angles, which are %.2g "
+                        "terms, but the maximum is %g. Lower the frequency, or narrow surface.pattern.theta_deg",
                         hf_config_place(&p->settings, place, "surface.frequencies_Hz"), at->value[k] / 1e9,
                         (double)plan.n_point, hf_pattern_angles(&plan), terms, PATTERN_TERMS_MOST);
     }

@@ -121,7 +121,7 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
         return hf_error(
             messages, HF_BAD_CASE,
             "%s: cable '%s' is %.3g m long, and errors of cutting and temperature (%d standard deviations) may change "
-            "its length by %.3g times its value, but the maximum is 0.5 times; use smaller errors",
+            "its length by the fraction %.3g, but the maximum is 0.5; use smaller errors",
             hf_config_place(&p->settings, place, "%s", key), s->cable_id[e], length, LARGEST_NUMBER,
             by_cut + by_ratio + by_heat);
     }
