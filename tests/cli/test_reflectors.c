@@ -56,7 +56,7 @@ static const struct {
      ": truss.ring.height_m: is missing: the net has no rear rim that gives this height\n"},
     {DISH "truss: {ring: {cells_per_bay: 5}}\n",
      ":2:31: truss.ring.cells_per_bay: 5 must divide the 24 cells at the rim into at least three bays\n"},
-    {DISH "truss: {ring: {cells_per_bay: 12}}\n", ":2:31: truss.ring.cells_per_bay: of 12 must divide the 24"},
+    {DISH "truss: {ring: {cells_per_bay: 12}}\n", ":2:31: truss.ring.cells_per_bay: 12 must divide the 24"},
     {DISH "truss: {ring: {longeron: {wall_m: 0.02}}}\n",
      ":2:35: truss.ring.longeron.wall_m: must not be more than half the diameter_m beside it\n"},
     {DISH "truss: {depth_m: 1, ring: {}}\n",

@@ -252,7 +252,7 @@ START_TEST(cut_list_needs_EA)
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", out, "--quiet");
     HIFDM(2, "export", out, "--cutlist", cut);
     ERR("inner cables have no EA, which cutting lengths need, such as 'n");
-    ERR("give scene.EA_inner_N, or the column EA_N of an imported net, and run again\n");
+    ERR("Add scene.EA_inner_N, or the column EA_N of an imported net, and run again\n");
     ERR("boundary cables have no EA");
     HIFDM(0, "run", temp("f.yaml"), "-o", out, "--quiet", "--force", "--set", "scene.EA_inner_N=5e4");
     HIFDM(2, "export", out, "--cutlist", cut);
