@@ -61,7 +61,7 @@ bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void
  *
  * Returns the solver that later evaluations use. If the matrix cannot be factored at `initial`, or if memory runs out,
  * no data are shared and the function may return another solver. The results of another solver differ in the last bits.
- * If memory ran out, batch->lacks_memory is therefore set to true. */
+ * If memory runs out, the function sets batch->lacks_memory to true. */
 hf_solver hf_batch_share(hf_batch *batch, const double *initial);
 
 /* Returns the solver that hf_batch_share selects if `initial` is suitable and memory suffices. Sets *has_lanes to true

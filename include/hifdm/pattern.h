@@ -103,8 +103,8 @@ typedef enum {
     HF_CUT_AT_END  /* the maximum is at the first or the last angle */
 } hf_cut_doubt;
 
-/* The figures of one cut of the far field. A figure is NaN if the range of angles is too small to determine it. If the
- * cut is doubtful, all figures except the maximum are NaN. */
+/* Gain, beamwidth and sidelobes of one cut of the far field. A figure is NaN if the range of angles is too small to
+ * determine it. If the cut is doubtful, all figures except the maximum are NaN. */
 typedef struct {
     double gain_dBi, beam_deg;   /* maximum and its angle, from a parabola through three angles */
     double half_power_width_deg; /* half-power width of the beam */

@@ -1,8 +1,8 @@
 /* scene - the net as the user describes it: nodes, supports, loads, cables and the law of each cable.
  * Stability: stable.
  *
- * A scene comes from a generator (generate.h), from arrays (scene_arrays.h) or from CSV files (scene_import). A scene
- * is checked once and does not change afterwards. Lengths are in m, forces in N and force densities in N/m. */
+ * A scene comes from a generator (generate.h), from arrays (scene_arrays.h) or from CSV files (scene_import.h). A
+ * scene is checked once and does not change afterwards. Lengths are in m, forces in N and force densities in N/m. */
 #pragma once
 
 #include <hifdm/api.h>

@@ -28,10 +28,10 @@ typedef struct {
     const int *set_cable;        /* [set_start[n_set]] cables, counted from 0, in ascending order in each set */
 } hf_scene_arrays;
 
-/* Copies the arrays into a scene. The array group_EA_N has the axial stiffness in N, by hf_group, of cables without
- * EA_N. The value 0 means that there is none. Returns HF_OK or HF_NO_MEMORY. If the arrays have faults, returns
- * HF_BAD_CASE with messages that contain the node, cable or set. The caller must then check the scene (hf_scene_check).
- * Call hf_scene_free even after a failure. */
+/* Copies the arrays into a scene. The array group_EA_N, indexed by hf_group, contains the axial stiffness in N of
+ * cables that have no EA_N of their own. The value 0 means that there is none. Returns HF_OK or HF_NO_MEMORY. If the
+ * arrays have faults, returns HF_BAD_CASE with messages that contain the node, cable or set. The caller must then check
+ * the scene (hf_scene_check). Call hf_scene_free even after a failure. */
 hf_status hf_scene_from_arrays(const hf_scene_arrays *arrays, const double group_EA_N[2], hf_scene *scene,
                                hf_messages *messages);
 

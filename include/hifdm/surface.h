@@ -119,7 +119,7 @@ hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int
 void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
                            double *error_m);
 
-/* The figures of a shape as a reflector surface. */
+/* The surface errors of a shape, and its losses as a reflector. */
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)

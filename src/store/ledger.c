@@ -73,7 +73,7 @@ hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages
     snprintf(path, sizeof path, "%s/claims", folder);
     l->claims = hf_file_out_keep(path, &was_there);
     if (l->claims < 0 && errno == EEXIST)
-        return hf_error(messages, HF_IO, "%s: is a link, a folder or another special file; remove it", path);
+        return hf_error(messages, HF_IO, "%s: is not a regular file; remove it", path);
     if (l->claims < 0) return hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
     return HF_OK;
 }
@@ -296,7 +296,7 @@ static bool read_rows(reading *r, char *text)
 
 static hf_status tell_in_the_way(const char *path, hf_messages *messages)
 {
-    return hf_error(messages, HF_IO, "%s: is a folder or another special file; remove it", path);
+    return hf_error(messages, HF_IO, "%s: is not a regular file; remove it", path);
 }
 
 /* Reads what the file holds now, from byte `at` on, as a text, which the caller frees. Rows that are added meanwhile

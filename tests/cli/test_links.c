@@ -190,7 +190,7 @@ START_TEST(locks_lead_nowhere_else)
     SHELL(0, "mkdir \"$1\"", temp("s.d"));
     SHELL(0, in_the_way[_i], temp("s.d/claims"), mine, empty);
     HIFDM(5, "sweep", study, "--dir", temp("s.d"));
-    ERRS("error: %s: is a link, a folder or another special file; remove it\n", temp("s.d/claims"));
+    ERRS("error: %s: is not a regular file; remove it\n", temp("s.d/claims"));
     demand_untouched();
     ck_assert(!is_there(temp("s.d/none")));
 }

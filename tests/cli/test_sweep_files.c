@@ -200,12 +200,11 @@ START_TEST(what_is_no_file_in_the_folder_is_named)
     for (int k = 0; k < 2; k++) {
         SHELL(0, "mkdir -p \"$1\" && $3 \"$2\"", folder, there, make[k]);
         HIFDM(5, "status", path, "--dir", folder);
-        ERRS("error: %s: is a folder or another special file; remove it\n", there);
+        ERRS("error: %s: is not a regular file; remove it\n", there);
         HIFDM(5, "merge", path, "--dir", folder, "-o", temp("s.h5"));
-        ERRS("error: %s: is a folder or another special file; remove it\n", there);
+        ERRS("error: %s: is not a regular file; remove it\n", there);
         HIFDM(5, "sweep", path, "--dir", folder);
-        ERRS("error: %s: is a ", there);
-        ERR("another special file; remove it\n");
+        ERRS("error: %s: is not a regular file; remove it\n", there);
         SHELL(0, "rm -r \"$1\"", there);
     }
     HIFDM(0, "sweep", path, "--dir", folder, "--quiet");

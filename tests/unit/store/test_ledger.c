@@ -517,8 +517,7 @@ END_TEST
 START_TEST(what_is_no_table_is_in_the_way)
 {
     static const char *const command[] = {"mkfifo '%s'", "mkdir '%s'", "truncate -s 40G '%s'"};
-    static const char *const words[] = {": is a folder or another special file; remove it\n",
-                                        ": is a folder or another special file; remove it\n",
+    static const char *const words[] = {": is not a regular file; remove it\n", ": is not a regular file; remove it\n",
                                         ": is not a table of hifdm, because it is longer than 4096 MB; remove it\n"};
     hf_study s;
     hf_ledger mine;

@@ -66,7 +66,7 @@ def old_attribute(owner: Any, name: str) -> Any:
 
 
 class Figures(dict):
-    """Figures by name. If a figure is requested by its name of version 0.2, a DeprecationWarning is issued."""
+    """Figures by name. Requesting a figure by its version 0.2 name issues a DeprecationWarning."""
 
     def __missing__(self, key: str) -> Any:
         new = new_key(key) if isinstance(key, str) else None

@@ -470,8 +470,8 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
     `end`: indices of the two end nodes of each cable [n_cable, 2], int32.
 
     `role`: role of each node, which is "support", "inner" or "edge". Only the nodes with the role "inner" contribute to
-    psi. The arguments `role`, `group` and `law` accept one word for all, a sequence of words, or an array of codes
-    (uint8).
+    psi. The arguments `role`, `group` and `law` accept a single word that applies to all items, a sequence of
+    words, or an array of codes (uint8).
 
     `group`: group of each cable, which is "inner" or "boundary". Without optimize.variables, the pretensions of the
     cables in the group "boundary" are the design variables.
@@ -479,8 +479,8 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
     `law`: law of each cable, which is "tension", "length", "force_density" or "elastic".
 
     `value`: target value of the law of each cable [n_cable], in N (tension), m (length), N/m (force density) or m
-    (unstressed length). A target value of NaN selects the pretension of the case, or the distance between the target
-    positions of the end nodes.
+    (unstressed length). If the target value is NaN, a default is used. For a tension, the default is the
+    pretension of the case. For a length, it is the distance between the target positions of the end nodes.
 
     `EA_N`: axial stiffness of each cable [n_cable], N.
 
