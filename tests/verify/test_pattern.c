@@ -122,7 +122,7 @@ START_TEST(faults_have_their_line)
     ERR("error: --set surface.pattern.feed.aim_m: the feed at (0, 0, 2) m cannot aim at its own position\n");
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.frequencies_Hz=[1e9, 1e15]");
-    ERR("error: --set surface.frequencies_Hz: at 1e+06 GHz the far field has ");
+    ERR("error: --set surface.frequencies_Hz: at 1e+06 GHz the far field needs ");
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.frequencies_Hz=[1e8]");
     ERR(" wavelengths across: physical optics does not hold below about 5\n");

@@ -159,8 +159,8 @@ static const struct {
      "error: c.yaml:6:30: load_cases.0.temperature_K: the expansion of 163 cables is not known, such as 'f0_0-f1_0'. "
      "Add expansion_per_K of their sets to `cables`; use 0 for cables that do not expand\n"},
     {NET "cables:\n  - {expansion_per_K: 1e-3}\nload_cases:\n  - {name: a, temperature_K: -2000}\n", "",
-     "error: c.yaml:8:30: load_cases.0.temperature_K: 163 cables would change by more than 0.1 times their lengths, "
-     "such as 'f0_0-f1_0' by -2 times at -2000 K. Check this temperature and expansion_per_K\n"},
+     "error: c.yaml:8:30: load_cases.0.temperature_K: the lengths of 163 cables would change by more than the "
+     "fraction 0.1, such as 'f0_0-f1_0' by -2 at -2000 K. Check this temperature and expansion_per_K\n"},
     {NET "cables:\n  - {set: front, mass_kg_per_m: 1}\nload_cases:\n  - {name: a, gravity_m_per_s2: 1}\n", "",
      "error: c.yaml:8:33: load_cases.0.gravity_m_per_s2: the mass of 121 cables is not known, such as 'f2_0-f3_17'. "
      "Add mass_kg_per_m of their sets to `cables`; use 0 for cables without mass\n"},
