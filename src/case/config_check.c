@@ -1,6 +1,5 @@
 #include "case/config_check.h"
 
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

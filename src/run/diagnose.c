@@ -559,7 +559,7 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
  * none; HF_NO_MEMORY. */
 static hf_status look_at_reach(reach *q)
 {
-    for (int i = 0; i < 2 && (i == 0 || memchr(&q->now, true, sizeof q->now)); i++) {
+    for (int i = 0; i < 2 && (i == 0 || memchr(&q->now, 1, sizeof q->now)); i++) {
         hf_form_result r;
         choose_design(q, i > 0);
         hf_status status = hf_evaluate(&q->v, q->design, &q->w, NULL, &r);

@@ -17,7 +17,6 @@
 #include "solve/joint.h"
 #include "solve/newton.h"
 
-
 #define FIRST_BLOCK 6  /* iterations of hf_form_find before Newton's method; the tests pass with 2 and 20 */
 #define NEWTON_MAX 30  /* maximum Newton steps after them */
 #define PATH_MAX 60    /* maximum factorisations on the path; stress tests took up to 49 */

@@ -225,8 +225,8 @@ START_TEST(a_shape_with_a_slack_boundary_cable_is_kept)
              "bd,b,d,inner,tension,10,\nde,d,e,inner,tension,10,\nbc2,c,b,inner,elastic,1.0,1e4\n");
     const char *c = file_with("slack.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n" SMALL_GA);
     HIFDM(3, "run", c, "-o", path);
-    ERR("error: optimize: boundary cable 'bc' has no tension after form-finding, so the search cannot start. Give "
-        "it a shorter");
+    ERR("error: optimize: boundary cable 'bc' has no tension after form-finding, so the search cannot start. Use a "
+        "shorter length for this cable");
     OUT("\n  form          ");
     EXPECT(path, "--", "a.attrs['finished'] == 1", "a['form/tension_N'].shape == (5,)", "'search' not in a",
            "'ga' not in a");
