@@ -201,7 +201,8 @@ static void run_chord(bench_scene *b, int (*next)(void *context), void *context,
 
 static void chord_phases(bench_scene *b)
 {
-    static const hf_chord_kernels timed = {timed_chord_forces, timed_chord_step, NULL, NULL, timed_chord_measure};
+    static const hf_chord_kernels timed = {
+        .forces = timed_chord_forces, .step = timed_chord_step, .measure = timed_chord_measure};
     if (!hf_chord_applies(&b->evaluator)) return;
     b->evaluator.solver = HF_SOLVER_NEWTON;
     b->form.residual_tolerance = 1e-7;
