@@ -128,9 +128,7 @@ hf_status hf_cmd_check_study(const hf_check_request *request, hf_check *check, F
 {
     static hf_study study;
     if (request->n_set)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "%s: --set does not work with a study; change its base case or an "
-                        "axis",
+        return hf_error(messages, HF_BAD_USAGE, "%s: --set does not work with a study; change its base case or an axis",
                         request->path);
     hf_status status = hf_study_read(request->path, &study, messages);
     if (status == HF_OK) status = check_study(request, &study, check, f, messages);

@@ -308,9 +308,8 @@ static hf_status find_option(const char *word, const hf_command *command, hf_opt
     }
     if (is_elsewhere)
         return hf_error(messages, HF_BAD_USAGE,
-                        "'%s' is not an option of this command; 'hifdm help %s' lists its "
-                        "options",
-                        word, command->name);
+                        "'%s' is not an option of this command; 'hifdm help %s' lists its options", word,
+                        command->name);
     char where[32];
     snprintf(where, sizeof where, " %s", command->name);
     return unknown("option", word, names, N_OPTION, where, messages);

@@ -62,8 +62,7 @@ static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messa
     double aperture_m = of.kind == HF_SURFACE_PARABOLIC_CYLINDER ? x_m : fmax(x_m, y_m);
     if (!(of.focal_length_m > FOCAL_MOST * aperture_m)) return;
     hf_warning(messages,
-               "%s: %g m is %.0f times the aperture of %g m; reflectors have less than %g times. Is this "
-               "value in m?",
+               "%s: %g m is %.0f times the aperture of %g m; reflectors have less than %g times. Is this value in m?",
                hf_config_place(c, location, "%s", key), of.focal_length_m, of.focal_length_m / aperture_m, aperture_m,
                FOCAL_MOST);
 }

@@ -16,8 +16,7 @@ const hf_section hf_section_table[] = {
 #undef SECTION
         {"scene.import", AT(has_import), "Any net from two CSV files."},
     {"surface", AT(has_surface),
-     "Target surface and figures of the reflecting surface. Without this section, hifdm "
-     "computes no surface figures."},
+     "Target surface and figures of the reflecting surface. Without this section, hifdm computes no surface figures."},
     {"surface.pattern", AT(surface.has_pattern),
      "Far field, computed by physical optics over the facets at surface.frequencies_Hz. Without this section, hifdm "
      "computes no far field."},
@@ -41,8 +40,7 @@ const hf_section hf_section_table[] = {
     {"truss.ring.diagonal", AT(has_truss_ring), "Members across the bays."},
     {"truss.import", AT(has_truss_import), "Any truss from two CSV files, in place of the generated units."},
     {"coupling", SIZE_MAX,
-     "Coupling of the net with its truss (Fig. 17 of the paper). Without a truss, this section "
-     "is not used."},
+     "Coupling of the net with its truss (Fig. 17 of the paper). Without a truss, this section is not used."},
     {"adjust", AT(has_adjust),
      "Turnbuckles of the as-built net for `hifdm adjust`, which finds adjustments from measured positions."},
     {"sweep", AT(has_sweep),
@@ -106,8 +104,7 @@ const hf_field hf_field_table[] = {
      "below the power on the axis, without the effect of the distances"},
     {"surface.pattern.feed.polarisation", HF_FIELD_WORD, AT(surface.pattern.polarisation), 0, 0, "x", "",
      HF_WORDS("x", "y"),
-     "Polarisation of the electric field on the axis of the feed. For a line source: across the "
-     "line or along it"},
+     "Polarisation of the electric field on the axis of the feed. For a line source: across the line or along it"},
 
     {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", hf_method_word,
      "With newton, every cable obeys its own law, solved by Newton's method on the energy. With hifdm, the iteration "
@@ -305,9 +302,8 @@ static const hf_field variable_field[] = {
      "Cables that vary, or cables whose supports vary: a set of the net, or inner, boundary, all"},
     {"vary", HF_FIELD_WORD, IN(variable, vary), 0, 0, NULL, "", hf_vary_word,
      "Quantity that varies. With tension (N), force_density (N/m) or length (m), the cable keeps the value. "
-     "unstressed_length (m) is for cables with law elastic. support_z, support_normal and support_xyz (m) displace "
-     "the supports at the ends of the cables along z, along the normal of the target surface, or in all three "
-     "directions"},
+     "unstressed_length (m) is for cables with law elastic. support_z, support_normal and support_xyz (m) displace the "
+     "supports at the ends of the cables along z, along the normal of the target surface, or in all three directions"},
     {"range", HF_FIELD_AMOUNT, IN(variable, range), HF_ABOVE_ZERO, BIG, "", "", NULL,
      "Maximum change from the value after form-finding, in the unit of the quantity or in per cent of the value. "
      "Default: as far as the bounds allow"},
@@ -408,10 +404,9 @@ static const hf_field load_case_field[] = {
 
 static const hf_field require_field[] = {
     {"measure", HF_FIELD_WORD, IN(require, measure), 0, 0, NULL, "", hf_tolerance_measure_word,
-     "Figure of each as-built net. Surface figures need a section surface, and facet figures a net with facets. "
-     "Losses by Ruze's formula (...gain_loss_dB) need surface.frequencies_Hz, and pattern_loss_dB needs "
-     "surface.pattern. Figures with fit_ are those after the best fit, that is, after the reflector has been pointed "
-     "and focused again"},
+     "Figure of each as-built net. Surface figures need a section surface, and facet figures a net with facets. Losses "
+     "by Ruze's formula (...gain_loss_dB) need surface.frequencies_Hz, and pattern_loss_dB needs surface.pattern. "
+     "Figures with fit_ are those after the best fit, that is, after the reflector has been pointed and focused again"},
     {"at_most", HF_FIELD_DOUBLE, IN(require, at_most), -BIG, BIG, "", "", NULL, "Maximum allowed value"},
     {"at_least", HF_FIELD_DOUBLE, IN(require, at_least), -BIG, BIG, "", "", NULL, "Minimum allowed value"},
 };
@@ -436,8 +431,7 @@ const hf_list hf_list_table[] = {
          "Design variables. Without rows, the pretensions of the boundary cables vary within range_N, and rule "
          "determines how they act"),
     LIST("optimize.objective", optimize.n_term, optimize.term, HF_DESIGN_ROWS_MAX, objective_field, 0,
-         "Objectives, which the merit of a design combines. Without rows, the objective is "
-         "psi"),
+         "Objectives, which the merit of a design combines. Without rows, the objective is psi"),
     /* A row of optimize.front has the keys of a row of optimize.objective without the last one, weight. */
     LIST("optimize.front", optimize.n_front, optimize.front, HF_FRONT_OBJECTIVES_MAX, objective_field, 1,
          "Two or three objectives of a Pareto front. The run then finds the front instead of one design. No other "
@@ -452,8 +446,7 @@ const hf_list hf_list_table[] = {
          "Up to 16 load cases of the as-built net: temperatures, gravity, forces and displacements of supports. "
          "Without rows, hifdm computes none"),
     LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field, 0,
-         "Requirements for each as-built net. Without rows, there are no requirements and no "
-         "yield"),
+         "Requirements for each as-built net. Without rows, there are no requirements and no yield"),
     LIST("tolerance.truss", tolerance.n_truss, tolerance.truss, HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, 0,
          "Temperatures of the truss that vary independently. The temperatures of rows with the same members add up. "
          "Without rows, the temperature of the truss does not vary"),

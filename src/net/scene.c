@@ -138,9 +138,7 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
         n_inner += scene->role[i] == HF_ROLE_INNER;
     }
     if (n_free == 0)
-        return hf_error(messages, HF_BAD_CASE,
-                        "scene: every node is a support, so there is no shape to "
-                        "find");
+        return hf_error(messages, HF_BAD_CASE, "scene: every node is a support, so there is no shape to find");
     if (n_inner == 0)
         return hf_error(messages, HF_BAD_CASE,
                         "scene: no node has the role 'inner', so psi would count no nodes; give inner nodes that role");

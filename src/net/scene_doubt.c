@@ -115,8 +115,7 @@ static void doubt_lengths(const hf_scene *s, hf_messages *messages)
         if (!is_length || fabs(ratio - 1) <= LENGTH_PART || ++n_said > SAID_MAX) continue;
         hf_scene_location(s, true, e, place, sizeof place);
         hf_warning(messages,
-                   "%s is %.4g m long by its law, %.3g times the distance between its nodes: is its length "
-                   "in m?",
+                   "%s is %.4g m long by its law, %.3g times the distance between its nodes: is its length in m?",
                    place, s->target[e], ratio);
     }
     if (n_said > SAID_MAX)

@@ -146,8 +146,7 @@ static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_m
     if (!source) return hf_config_scene(&p->settings, &p->scene, messages);
     if (!p->settings.has_import || *p->settings.facets_path)
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: a net from arrays needs a section scene with an import of nodes and cables, and no "
-                        "facets",
+                        "%s: a net from arrays needs a section scene with an import of nodes and cables, and no facets",
                         p->settings.path);
     HF_TRY(hf_scene_from_arrays(source->net, p->settings.EA_N, &p->scene, messages));
     HF_TRY(hf_scene_check(&p->scene, messages));

@@ -71,9 +71,8 @@ static hf_status open_and_lock(hf_journal *j, content *is, hf_messages *messages
             errno = why;
             if (lock == HF_LOCK_FAILED) return fail(j, "lock", j->path, messages);
             return hf_error(messages, HF_EXISTS,
-                            "%s: another process is writing it (that process holds the lock of "
-                            "%s)",
-                            j->result, j->path);
+                            "%s: another process is writing it (that process holds the lock of %s)", j->result,
+                            j->path);
         }
         if (lock == HF_LOCK_NONE && i == 0)
             hf_warning(messages,

@@ -74,8 +74,7 @@ const hf_layout_column hf_layout_scene[] = {
     HF_LAYOUT_COLUMN(hf_scene, "cable/group", group, GROUP, 1, 1, "", "inner or boundary"),
     HF_LAYOUT_COLUMN(hf_scene, "cable/law", law, LAW, 1, 1, "", "what the scene asks of the cable"),
     HF_LAYOUT_COLUMN(hf_scene, "cable/target", target, REAL, 1, 1, "N, m or N/m",
-                     "tension, length, force density or unstressed length, by law; "
-                     "NaN = the pretension of the case"),
+                     "tension, length, force density or unstressed length, by law; NaN = the pretension of the case"),
     HF_LAYOUT_COLUMN(hf_scene, "cable/EA_N", EA_N, REAL, 1, 1, "N", "axial stiffness, NaN where not given"),
     {0}};
 

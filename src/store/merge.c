@@ -337,8 +337,7 @@ static hf_status check_output(const char *path, hf_messages *messages)
     HF_TRY(tried);
     if (is_replaceable(path)) return HF_OK;
     return hf_error(messages, HF_EXISTS,
-                    "%s: exists and is not a merged study; use --force to replace it or -o to "
-                    "choose another name",
+                    "%s: exists and is not a merged study; use --force to replace it or -o to choose another name",
                     path);
 }
 

@@ -174,8 +174,7 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
     }
     if (is_taken)
         f->io.status = hf_error(f->io.messages, HF_EXISTS,
-                                "%s: was created, replaced or removed by another process during the "
-                                "run%s%s",
+                                "%s: was created, replaced or removed by another process during the run%s%s",
                                 f->out.path, words, kept);
     else
         f->io.status =
