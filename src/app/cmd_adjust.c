@@ -372,8 +372,7 @@ static void print_json_findings(const job *from, hf_json *j)
 
 static void print_json_errors(const job *from, hf_json *j)
 {
-    hf_json_line(j, " ");
-    hf_json_open(j, "errors_m", '{');
+    hf_json_open_line(j, " ", "errors_m", '{');
     for (int e = 0; e < from->built.model.n_cable; e++) {
         if (e % 4 == 0) hf_json_line(j, "  ");
         hf_json_number(j, from->built.scene.cable_id[e], from->estimate.cut_m[e]);

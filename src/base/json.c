@@ -65,16 +65,20 @@ void hf_json_line(hf_json *j, const char *indentation)
     j->line = indentation;
 }
 
+void hf_json_open_line(hf_json *j, const char *indentation, const char *key, char bracket)
+{
+    hf_json_line(j, indentation);
+    hf_json_open(j, key, bracket);
+}
+
 void hf_json_open_rows(hf_json *j, const char *key)
 {
-    hf_json_line(j, " ");
-    hf_json_open(j, key, '[');
+    hf_json_open_line(j, " ", key, '[');
 }
 
 void hf_json_open_row(hf_json *j)
 {
-    hf_json_line(j, "  ");
-    hf_json_open(j, NULL, '{');
+    hf_json_open_line(j, "  ", NULL, '{');
 }
 
 void hf_json_text(hf_json *j, const char *key, const char *text)

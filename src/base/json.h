@@ -20,6 +20,8 @@ void hf_json_close(hf_json *json, char bracket);
 
 /* Begins a new line before the next item, with this indentation. The text is borrowed. */
 void hf_json_line(hf_json *json, const char *indentation);
+/* Begins an object or a list on a new line. */
+void hf_json_open_line(hf_json *json, const char *indentation, const char *key, char bracket);
 
 /* hf_json_open_rows begins a list on a line of its own, whose items are objects on lines of their own;
  * hf_json_open_row begins one of these. */

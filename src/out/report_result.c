@@ -231,8 +231,7 @@ static void write_truss(const page *p, FILE *f)
  * for. */
 static void write_figures(hf_json *j)
 {
-    hf_json_line(j, "");
-    hf_json_open(j, "figures", '[');
+    hf_json_open_line(j, "", "figures", '[');
     for (const hf_result_field *figure = hf_result_field_of; figure < hf_result_field_of + HF_RESULT_N; figure++) {
         if (!figure->json) continue;
         hf_json_open(j, NULL, '{');
@@ -247,8 +246,7 @@ static void write_figures(hf_json *j)
 /* Writes the units of objectives by their names. */
 static void write_objective_units(const hf_summary *s, hf_json *j)
 {
-    hf_json_line(j, "");
-    hf_json_open(j, "objective_unit", '{');
+    hf_json_open_line(j, "", "objective_unit", '{');
     for (int k = 0; k < s->objectives.n; k++)
         hf_json_text(j, s->objectives.name[k], hf_ledger_objective_unit(s->objectives.name[k]));
     hf_json_close(j, '}');
@@ -268,8 +266,7 @@ static void write_word(hf_json *j, const hf_word *w, const char *name)
  * Figures and reasons also have their earlier names. */
 static void write_words(hf_json *j)
 {
-    hf_json_line(j, "");
-    hf_json_open(j, "words", '[');
+    hf_json_open_line(j, "", "words", '[');
     for (int i = 0; i < hf_word_count(); i++) {
         const hf_word w = hf_word_at(i);
         bool is_term = !strcmp(w.kind, "term");
@@ -430,8 +427,7 @@ static void write_data(const void *context, FILE *f)
     if (p->other) write_other(p, p->other, f);
     if (!p->other && s->front) write_stored("overrides", &p->overrides, f);
     if (p->part) {
-        hf_json_line(&j, "");
-        hf_json_open(&j, p->part->key, '{');
+        hf_json_open_line(&j, "", p->part->key, '{');
         p->part->write(p->part->context, &j);
         hf_json_close(&j, '}');
     }

@@ -127,8 +127,7 @@ static void write_figures(const hf_merged *m, FILE *f)
 {
     hf_json j = {.file = f, .is_due = true};
     char word[WORD_SIZE];
-    hf_json_line(&j, "");
-    hf_json_open(&j, "figure", '[');
+    hf_json_open_line(&j, "", "figure", '[');
     for (int k = 0; k < m->n_figure; k++) {
         const hf_merged_figure *figure = &m->figure[k];
         hf_json_open(&j, NULL, '{');

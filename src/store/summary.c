@@ -44,13 +44,6 @@ double hf_summary_utilisation(const hf_summary *s)
 
 /* ---- figures by the lists ---- */
 
-/* Begins an object or a list on a new line. */
-static void open_line(hf_json *j, const char *indentation, const char *key, char bracket)
-{
-    hf_json_line(j, indentation);
-    hf_json_open(j, key, bracket);
-}
-
 static void write_field(const hf_result_field *field, const void *owner, hf_json *j)
 {
     const void *value = (const char *)owner + field->offset;
@@ -97,7 +90,7 @@ static void write_result(const hf_form_result *r, hf_json *j)
 static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_json *j)
 {
     if (!m->is_measured) return;
-    open_line(j, "  ", "surface", '{');
+    hf_json_open_line(j, "  ", "surface", '{');
     hf_json_text(j, "kind", hf_surface_kind_word[s->surface.kind]);
     write_fields(hf_layout_surface, HF_LAYOUT_N_SURFACE, 1, LAST_PLACE, m, j);
     hf_json_list(j, "frequency_Hz", s->surface.frequencies_Hz.value, s->surface.frequencies_Hz.n);
@@ -111,10 +104,10 @@ static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_
 static void write_pattern(const hf_pattern_summary *s, hf_json *j)
 {
     if (!s) return;
-    open_line(j, "  ", "pattern", '[');
+    hf_json_open_line(j, "  ", "pattern", '[');
     for (int k = 0; k < s->n_frequency * s->n_cut; k++) {
         const hf_cut_figures *f = &s->figure[k];
-        open_line(j, "   ", NULL, '{');
+        hf_json_open_line(j, "   ", NULL, '{');
         hf_json_number(j, "frequency_Hz", s->frequency_Hz[k / s->n_cut]);
         hf_json_number(j, "phi_deg", s->phi_deg[k % s->n_cut]);
         hf_json_number(j, "gain_dBi", f->gain_dBi);
@@ -131,7 +124,7 @@ static void write_pattern(const hf_pattern_summary *s, hf_json *j)
 static void write_sets(const hf_set_tensions *s, hf_json *j)
 {
     if (!s || s->n == 0) return;
-    open_line(j, "  ", "sets", '{');
+    hf_json_open_line(j, "  ", "sets", '{');
     for (int k = 0; k < s->n; k++) {
         hf_json_open(j, s->name[k], '{');
         hf_json_number(j, "min_N", s->min_N[k]);
@@ -146,7 +139,7 @@ static void write_sets(const hf_set_tensions *s, hf_json *j)
 static void write_held(const hf_held_limits *h, hf_json *j)
 {
     if (!h || h->n == 0) return;
-    open_line(j, "  ", "at_limits", '[');
+    hf_json_open_line(j, "  ", "at_limits", '[');
     for (int i = 0; i < h->n; i++) {
         hf_json_open(j, NULL, '{');
         hf_json_integer(j, "row", h->row[i]);
@@ -180,7 +173,7 @@ static void write_objectives(const hf_summary *s, const hf_form_result *r, hf_js
 static void write_stage(const hf_summary *s, hf_stage stage, hf_json *j)
 {
     const hf_stage_summary *of = &s->stage[stage];
-    open_line(j, " ", hf_stage_word[stage], '{');
+    hf_json_open_line(j, " ", hf_stage_word[stage], '{');
     write_result(&of->result, j);
     if (stage == HF_STAGE_FORM)
         hf_json_text(j, "stop_reason", hf_stop_reason_word((int)of->result.stop_reason));
@@ -213,7 +206,7 @@ static void write_front_values(const hf_summary *s, const char *key, const doubl
 static void write_front(const hf_summary *s, hf_json *j)
 {
     const hf_front_table *t = s->front;
-    open_line(j, " ", "front", '{');
+    hf_json_open_line(j, " ", "front", '{');
     hf_json_integer(j, "n_point", t->n_point);
     hf_json_integer(j, "n_listed", t->n_row);
     hf_json_integer(j, "n_dominated", t->n_dominated);
@@ -224,10 +217,10 @@ static void write_front(const hf_summary *s, hf_json *j)
     hf_json_number(j, "wall_s", t->wall_s);
     hf_json_line(j, "  ");
     write_front_values(s, "initial", t->initial, j);
-    open_line(j, "  ", "points", '[');
+    hf_json_open_line(j, "  ", "points", '[');
     for (int i = 0; i < t->n_row; i++) {
         const hf_front_point *p = &t->row[i];
-        open_line(j, "   ", NULL, '{');
+        hf_json_open_line(j, "   ", NULL, '{');
         hf_json_integer(j, "id", t->index[i] + 1); /* as in the table of hifdm export --front */
         write_front_values(s, "objective", p->objective, j);
         if (t->minimised >= 0) write_front_values(s, "multiplier", p->multiplier, j);
@@ -245,10 +238,10 @@ static void write_front(const hf_summary *s, hf_json *j)
 static void write_load_cases(const hf_summary *s, hf_json *j)
 {
     if (s->n_load_case == 0) return;
-    open_line(j, " ", "load_cases", '{');
+    hf_json_open_line(j, " ", "load_cases", '{');
     for (int k = 0; k < s->n_load_case; k++) {
         const hf_load_case_summary *load_case = &s->load_case[k];
-        open_line(j, "  ", load_case->name, '{');
+        hf_json_open_line(j, "  ", load_case->name, '{');
         write_result(&load_case->result, j);
         write_fields(hf_layout_load_case, HF_LAYOUT_N_LOAD_CASE, 1, LAST_PLACE, load_case, j);
         write_surface(s, &load_case->surface, j);
@@ -259,7 +252,7 @@ static void write_load_cases(const hf_summary *s, hf_json *j)
 
 static void write_figures(const hf_tolerance_figures *f, const char *measure, hf_json *j)
 {
-    open_line(j, "  ", measure, '{');
+    hf_json_open_line(j, "  ", measure, '{');
     hf_json_number(j, "mean", f->mean);
     hf_json_number(j, "mean_low", f->mean_low);
     hf_json_number(j, "mean_high", f->mean_high);
@@ -274,7 +267,7 @@ static void write_figures(const hf_tolerance_figures *f, const char *measure, hf
 
 static void write_requirements(const hf_tolerance_summary *t, hf_json *j)
 {
-    open_line(j, "  ", "require", '[');
+    hf_json_open_line(j, "  ", "require", '[');
     for (int k = 0; k < t->n_require; k++) {
         hf_json_open(j, NULL, '{');
         hf_json_text(j, "measure", hf_tolerance_measure_word[t->require[k].measure]);
@@ -288,11 +281,11 @@ static void write_requirements(const hf_tolerance_summary *t, hf_json *j)
 
 static void write_shares(const hf_tolerance_summary *t, hf_json *j)
 {
-    open_line(j, "  ", "kind_share", '{');
+    hf_json_open_line(j, "  ", "kind_share", '{');
     for (int k = 0; k < HF_TOLERANCE_KINDS; k++)
         if (t->kind_share[k] > 0) hf_json_number(j, hf_tolerance_kind_word[k], t->kind_share[k]);
     hf_json_close(j, '}');
-    open_line(j, "  ", "cable_share", '[');
+    hf_json_open_line(j, "  ", "cable_share", '[');
     for (int k = 0; k < t->n_ranked; k++) {
         hf_json_open(j, NULL, '{');
         hf_json_text(j, "cable", t->ranked_id[k]);
@@ -305,7 +298,7 @@ static void write_shares(const hf_tolerance_summary *t, hf_json *j)
 static void write_tolerance(const hf_summary *s, hf_json *j)
 {
     const hf_tolerance_summary *t = s->tolerance;
-    open_line(j, " ", "tolerance", '{');
+    hf_json_open_line(j, " ", "tolerance", '{');
     write_part(s, HF_LAYOUT_TOLERANCE, j);
     hf_json_list(j, "quantiles", hf_tolerance_quantile, HF_TOLERANCE_QUANTILES);
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
@@ -329,13 +322,13 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "status", hf_status_word(status));
     if (s->has_truss) {
-        open_line(j, " ", "truss", '{');
+        hf_json_open_line(j, " ", "truss", '{');
         write_part(s, HF_LAYOUT_TRUSS, j);
         hf_json_close(j, '}');
     }
     if (s->stage[HF_STAGE_FORM].exists) write_stage(s, HF_STAGE_FORM, j);
     if (s->has_coupling && form->coupling.iterations > 0) {
-        open_line(j, " ", "coupling", '{');
+        hf_json_open_line(j, " ", "coupling", '{');
         write_part(s, HF_LAYOUT_FORM_COUPLING, j);
         hf_json_close(j, '}');
     }
