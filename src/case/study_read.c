@@ -557,10 +557,7 @@ bool hf_study_is(const char *path)
     yaml_mark_t mark;
     yaml_document_t document;
     const yaml_node_t *found[N_ROOT_NAME] = {0};
-    hf_messages unwanted = {0};
-    hf_status status = hf_text_read_file(path, HF_BAD_CASE, &text, &length, &unwanted);
-    hf_messages_free(&unwanted);
-    if (status != HF_OK) return false;
+    if (hf_text_read_file(path, HF_BAD_CASE, &text, &length, NULL) != HF_OK) return false;
     if (length <= STUDY_MAX && !hf_text_too_deep(text) && load_yaml(text, length, &document, &problem, &mark)) {
         find_names(&document, yaml_document_get_root_node(&document), found);
         yaml_document_delete(&document);

@@ -35,12 +35,9 @@ enum { N_KEY = sizeof key_of_stage / sizeof *key_of_stage, N_BUILT = sizeof key_
 
 bool hf_merged_is(const char *path)
 {
-    hf_messages unwanted = {0};
     hf_series status = {0};
-    hf_status found = hf_store_read_series(path, "/points/status", 1, &status, &unwanted);
-    bool is_study = found == HF_OK && status.n > 0;
+    bool is_study = hf_store_read_series(path, "/points/status", 1, &status, NULL) == HF_OK && status.n > 0;
     hf_series_free(&status);
-    hf_messages_free(&unwanted);
     return is_study;
 }
 

@@ -167,7 +167,6 @@ static void find_psi_of_design(hf_adjust_case *j)
 /* Finds the adjustments for another figure and aim, and stores what they would reach. */
 static hf_status try_instead(hf_adjust_case *j, hf_figure_kind figure, hf_aim aim)
 {
-    hf_messages unwanted = {0};
     hf_adjust_settings settings = *j->task.settings;
     hf_adjust_task task = j->task;
     hf_objectives objectives = {0};
@@ -178,8 +177,7 @@ static hf_status try_instead(hf_adjust_case *j, hf_figure_kind figure, hf_aim ai
     task.settings = &settings;
     task.objectives = &objectives;
     take_aim(j, aim);
-    hf_status status = make_objectives(j, figure, &objectives, &unwanted);
-    hf_messages_free(&unwanted);
+    hf_status status = make_objectives(j, figure, &objectives, NULL);
     if (status == HF_OK) status = hf_adjust_find(&j->estimate, &task, &found);
     if (status == HF_OK)
         j->instead[j->n_instead++] = (hf_adjust_case_instead){

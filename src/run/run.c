@@ -115,10 +115,9 @@ static hf_status repeat_finished(const hf_run *r, hf_summary *s, hf_messages *me
  * published before and the journals remain. Returns `status`, or an error of the store. */
 static hf_status end_unfinished(hf_run *r, const hf_summary *s, hf_status status, hf_messages *messages)
 {
-    hf_messages unwanted = {0}; /* a failure after the design has its own message */
     hf_status kept = HF_OK;
-    if (r->may_publish) kept = hf_store_publish(r->store, s, true, r->has_design ? &unwanted : messages);
-    hf_messages_free(&unwanted);
+    /* a failure after the design has its own message */
+    if (r->may_publish) kept = hf_store_publish(r->store, s, true, r->has_design ? NULL : messages);
     if (kept != HF_OK && !r->has_design) return kept;
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(r->request)))
         hf_error(messages, status, "%s: interrupted%s; run the same command again to resume", r->output, r->stopped_at);
