@@ -3,7 +3,7 @@
  *
  * in : nodes.csv id,x_m,y_m,z_m[,sigma_m]; the sections tolerance (sizes of errors) and adjust (cables that have a
  *      turnbuckle) of the case.
- * out: order,cable,set,move_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm. One row per
+ * out: order,cable,set,turnbuckle_mm,tension_before_N,tension_after_N,predicted_rms_mm,expected_rms_mm. One row per
  *      adjustment, in the order in which they are made. A value above 0 makes the cable longer.
  *
  * Contents: the table - for people - for programs - the page - the command */
@@ -147,12 +147,6 @@ static void print_outliers(const job *j, FILE *f)
             f, "  such errors are estimated too small (hifdm explain outlier): measure again after the adjustments");
 }
 
-static double off_sigmas(const job *j, int k)
-{
-    int row = j->far_row[k];
-    return hf_adjust_case_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
-}
-
 /* Prints the measured nodes that are far from the estimated shape. */
 static void print_places(const job *j, FILE *f)
 {
@@ -166,7 +160,7 @@ static void print_places(const job *j, FILE *f)
         int row = j->far_row[k];
         hf_print_line(f, "node '%s' (line %d): %.3g mm, %.1f sigma",
                       j->built.scene.node_id[j->built.model.node_of_row[row]], j->measured.line[row],
-                      hf_adjust_case_off_m(j, row) * 1e3, off_sigmas(j, k));
+                      hf_adjust_case_off_m(j, row) * 1e3, hf_adjust_case_off_sigmas(j, row));
     }
 }
 
@@ -193,7 +187,7 @@ static void print_numbers(const job *j, FILE *f)
     if (n_off > NAMED_MAX) hf_print_line(f, "and %d more shared errors beyond %g sigma", n_off - NAMED_MAX, SEEMS_OFF);
 }
 
-static void print_moves(const job *j, FILE *f)
+static void print_adjustments(const job *j, FILE *f)
 {
     const hf_adjustment *a = &j->adjustment;
     int n_doubtful = 0;
@@ -240,7 +234,7 @@ static void print_summary(const job *j, const hf_options *o, FILE *f)
     print_numbers(j, f);
     print_outliers(j, f);
     print_places(j, f);
-    print_moves(j, f);
+    print_adjustments(j, f);
     hf_print_line(f,
                   "%s after %d adjustment%s %.4f mm; expected %.4f +- %.4f mm; a search over adjustments of all %d "
                   "cables, without minimum tensions, reached %.4f mm",
@@ -260,7 +254,7 @@ static void print_summary(const job *j, const hf_options *o, FILE *f)
 
 /* ---- for programs ---- */
 
-static void print_json_moves(const job *from, hf_json *j)
+static void print_json_adjustments(const job *from, hf_json *j)
 {
     const hf_adjustment *a = &from->adjustment;
     hf_json_open_rows(j, "adjustments");
@@ -295,7 +289,7 @@ static void print_json_moves(const job *from, hf_json *j)
         hf_json_open_row(j);
         hf_json_text(j, "node", from->built.scene.node_id[from->built.model.node_of_row[from->far_row[k]]]);
         hf_json_number(j, "distance_m", hf_adjust_case_off_m(from, from->far_row[k]));
-        hf_json_number(j, "sigmas", off_sigmas(from, k));
+        hf_json_number(j, "sigmas", hf_adjust_case_off_sigmas(from, from->far_row[k]));
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -365,7 +359,7 @@ static void print_json_findings(const job *from, hf_json *j)
     hf_json_integer(j, "estimate_steps", from->estimate.n_step);
     hf_json_integer(j, "rounds", a->n_round);
     hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
-    print_json_moves(from, j);
+    print_json_adjustments(from, j);
     print_json_instead(from, j);
     print_json_numbers(from, j);
 }

@@ -66,6 +66,21 @@ static bool is_shared(const hf_adjust_case *j, int e)
     return fabs(hf_estimate_own_m(&j->estimate, e)) < TOLD * fabs(j->estimate.cut_m[e]);
 }
 
+double hf_adjust_case_off_m(const hf_adjust_case *j, int row)
+{
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double d = j->measured.position_m[3 * row + c] - j->estimate.work.position_m[c * j->built.model.n_node + row];
+        square += d * d;
+    }
+    return sqrt(square);
+}
+
+double hf_adjust_case_off_sigmas(const hf_adjust_case *j, int row)
+{
+    return hf_adjust_case_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
+}
+
 /* Lists the measured nodes that are far from the estimated shape. Returns the row of the node that is farthest in parts
  * of its sigma. */
 static int find_places(hf_adjust_case *j)
@@ -75,7 +90,7 @@ static int find_places(hf_adjust_case *j)
     j->n_far = 0;
     for (int row = 0; row < j->built.model.n_node; row++) {
         if (!j->measured.line[row]) continue;
-        double off = hf_adjust_case_off_m(j, row) * sqrt(j->measured.weight_per_m2[3 * row]);
+        double off = hf_adjust_case_off_sigmas(j, row);
         if (off > HF_ADJUST_CASE_OFF) j->sized[j->n_far++] = (hf_adjust_case_sized){off, row};
         if (off <= most) continue;
         most = off;
@@ -83,16 +98,6 @@ static int find_places(hf_adjust_case *j)
     }
     sort(j, j->n_far, j->far_row);
     return worst;
-}
-
-double hf_adjust_case_off_m(const hf_adjust_case *j, int row)
-{
-    double square = 0;
-    for (int c = 0; c < 3; c++) {
-        double d = j->measured.position_m[3 * row + c] - j->estimate.work.position_m[c * j->built.model.n_node + row];
-        square += d * d;
-    }
-    return sqrt(square);
 }
 
 /* Lists the cables whose errors stand out, after the estimate. Returns HF_OK, HF_SINGULAR or HF_NO_MEMORY. */
@@ -115,8 +120,8 @@ static hf_status find_cables(hf_adjust_case *j)
 
 /* ---- other aims ---- */
 
-/* Makes the objective of one figure of the as-built net. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY; free goals in any
- * case. */
+/* Makes the objective of one figure of the as-built net. Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY. Free *objectives
+ * even after a failure. */
 static hf_status make_objectives(const hf_adjust_case *j, hf_figure_kind figure, hf_objectives *objectives,
                                  hf_messages *messages)
 {

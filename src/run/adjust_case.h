@@ -82,3 +82,5 @@ double hf_adjust_case_sigmas(const hf_adjust_case *adjust, int cable);
 
 /* Returns the distance of a measured node from the estimated shape, m. */
 double hf_adjust_case_off_m(const hf_adjust_case *adjust, int row);
+/* Returns this distance divided by the sigma of the measurement. */
+double hf_adjust_case_off_sigmas(const hf_adjust_case *adjust, int row);

@@ -18,7 +18,7 @@
 
 #include <math.h>
 
-#define OPERATIONS_PER_S 2e9 /* speed of one core, as in search/refine.c */
+#define OPERATIONS_PER_S 2e9 /* speed of one core in a step of the refinement, see hf_refine_operations */
 #define LONG_S 3600.0        /* above this time, or above LARGE_BYTES, advice is given */
 #define LARGE_BYTES 2e9
 #define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */

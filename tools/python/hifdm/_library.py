@@ -78,8 +78,8 @@ def _quiet_waiting() -> Iterator[None]:
     same.
 
     OpenMP reads the environment variables when it is loaded. By default, waiting threads of OpenMP spin for a
-    millisecond. With this default, evaluating small batches takes three
-    times as much processor time as with sleeping threads.
+    millisecond. With this default, evaluating small batches takes three times as much processor time as with sleeping
+    threads.
     """
     ours = {} if {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"} & os.environ.keys() else _WAITING
     os.environ.update(ours)
