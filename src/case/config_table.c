@@ -458,17 +458,28 @@ const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
 
 static bool is_same(const hf_field *f, const char *a, const char *b)
 {
-    static const size_t size[] = {
-        [HF_FIELD_DOUBLE] = sizeof(double),     [HF_FIELD_INT] = sizeof(int),
-        [HF_FIELD_UINT64] = sizeof(uint64_t),   [HF_FIELD_INT_PAIR] = 2 * sizeof(int),
-        [HF_FIELD_WORD] = sizeof(int),          [HF_FIELD_AMOUNT] = 2 * sizeof(double),
-        [HF_FIELD_BOUNDS] = 2 * sizeof(double), [HF_FIELD_VECTOR] = 3 * sizeof(double),
-    };
     const hf_double_list *p = (const void *)a, *q = (const void *)b;
-    if (f->type == HF_FIELD_TEXT) return !strcmp(a, b);
-    if (f->type == HF_FIELD_DOUBLE_LIST)
+    switch (f->type) { /* no default label, so that the compiler reports a type without a comparison */
+    case HF_FIELD_TEXT:
+        return !strcmp(a, b);
+    case HF_FIELD_DOUBLE:
+        return !memcmp(a, b, sizeof(double));
+    case HF_FIELD_UINT64:
+        return !memcmp(a, b, sizeof(uint64_t));
+    case HF_FIELD_INT_PAIR:
+        return !memcmp(a, b, 2 * sizeof(int));
+    case HF_FIELD_AMOUNT:
+    case HF_FIELD_BOUNDS:
+        return !memcmp(a, b, 2 * sizeof(double));
+    case HF_FIELD_VECTOR:
+        return !memcmp(a, b, 3 * sizeof(double));
+    case HF_FIELD_INT:
+    case HF_FIELD_WORD:
+        return !memcmp(a, b, sizeof(int));
+    case HF_FIELD_DOUBLE_LIST:
         return p->n == q->n && !memcmp(p->value, q->value, (size_t)p->n * sizeof *p->value);
-    return !memcmp(a, b, size[f->type]);
+    }
+    return false;
 }
 
 static int add_key(const char *key, int n, char *text, size_t size)
