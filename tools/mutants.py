@@ -8,7 +8,7 @@ meet all suites. The table is build/mutants/table.txt.
     tools/mutants.py                   all mutants, as many at a time as there are cores
     tools/mutants.py WORD...           those whose name, file or suites contain a word
     tools/mutants.py --list            only lists the names
-    tools/mutants.py --check           checks that every edit still applies
+    tools/mutants.py --check           checks that every edit still applies, of mutants_equivalent.txt, too
 """
 
 import argparse
@@ -115,6 +115,8 @@ def main():
     o = parser.parse_args()
     mutants = read_mutants(TOP, "tests/mutants.txt")
     chosen = [m for m in mutants if not o.word or any(w in f"{m.name} {m.path} {m.words}" for w in o.word)]
+    if o.check:
+        read_mutants(TOP, "tests/mutants_equivalent.txt")
     if o.list or o.check:
         for m in chosen if o.list else []:
             print(m.name, m.path)
