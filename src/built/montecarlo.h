@@ -4,7 +4,7 @@
 #include "built/directions.h"
 #include <hifdm/built_batch.h>
 #include "surface/gain.h"
-#include "surface/surface_near.h"
+#include "surface/surface_measure.h"
 #include <hifdm/tolerance.h>
 
 #include <stdatomic.h>

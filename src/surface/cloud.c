@@ -113,19 +113,7 @@ static double take_moves(hf_cloud *c, const double *node)
 
 /* ---- errors ---- */
 
-double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4])
-{
-    double t[2], u = hf_target_surface_height_above(kind, curvature, p, t), square = 1 + t[0] * t[0] + t[1] * t[1];
-    double weight = m < 1 ? 1 / sqrt(square) : 1 / square;
-    double flat = p[2] - u;     /* curvature times the squared distance from the axis */
-    for (int k = 0; k < 2; k++) /* d(1 + t^2) = 2 t dt, and dt/dx = 2 curvature along an axis with a slope */
-        d[k] = -weight * t[k] * (1 + 4 * m * curvature * u / square);
-    d[2] = weight;
-    d[3] = -weight * (flat / curvature + 8 * m * u * flat / square);
-    return u * weight;
-}
-
-/* Returns the power m of hf_cloud_error. */
+/* Returns the power m of hf_fit_error. */
 static double power_of(const hf_cloud *c)
 {
     return c->along == HF_ALONG_NORMAL ? 0.5 : 1;
@@ -141,7 +129,7 @@ static void take_errors(hf_cloud *c)
 {
     for (int i = 0; i < c->n; i++) {
         double d[4], p[3] = {c->position_m[i], c->position_m[c->n + i], c->position_m[2 * c->n + i]};
-        c->error_m[i] = hf_cloud_error(c->kind, power_of(c), 1 / (4 * c->focal_length_m), p, d);
+        c->error_m[i] = hf_fit_error(c->kind, power_of(c), 1 / (4 * c->focal_length_m), p, d);
         for (int k = 0; k < 3; k++)
             c->slope[k * c->n + i] = d[k];
     }
@@ -187,7 +175,7 @@ static hf_status fit_measure(hf_cloud *c)
     for (int i = 0; i < c->n; i++) {
         double arm[3], at[3], d[4];
         hf_fit_locate(&f, i, arm, at);
-        c->error_m[i] = fit.converged ? hf_cloud_error(c->kind, power_of(c), f.curvature_per_m, at, d) : (double)NAN;
+        c->error_m[i] = fit.converged ? hf_fit_error(c->kind, power_of(c), f.curvature_per_m, at, d) : (double)NAN;
     }
     return HF_OK;
 }
@@ -222,7 +210,7 @@ static hf_status fit_linearise(hf_cloud *c)
     for (int i = 0; i < c->n; i++) {
         double d[4];
         hf_fit_point p = hf_fit_point_take(&f, i);
-        hf_cloud_error(c->kind, power_of(c), f.curvature_per_m, p.at, d);
+        hf_fit_error(c->kind, power_of(c), f.curvature_per_m, p.at, d);
         for (int k = 0; k < q->found.n; k++) {
             pull_of(c, &f, &p, i, k);
             q->slope[k * c->n + i] = hf_fit_dot(d, p.by[k]);

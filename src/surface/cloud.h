@@ -60,8 +60,3 @@ hf_status hf_cloud_linearise(hf_cloud *cloud);
 
 /* Computes rate [n], the rates of the residuals for a motion `move` [3][n_node] of the nodes. */
 void hf_cloud_push(hf_cloud *cloud, const double *move, double *rate);
-
-/* Returns the error of a point p in metres, u / (1 + t^2)^m, with its height u above a surface of this
- * curvature and the slope t there (M16). m is 1 for the half path and 1/2 along the normal. d [4]: derivatives
- * by p and by the curvature. */
-double hf_cloud_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4]);

@@ -22,7 +22,6 @@
 #include "base/elementary.h"
 #include "net/target_surface.h"
 #include "linalg/dense.h"
-#include "surface/cloud.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -160,11 +159,23 @@ void hf_fit_derive(const hf_fit_frame *f, const double arm[3], double by[HF_FIT_
     }
 }
 
+double hf_fit_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4])
+{
+    double t[2], u = hf_target_surface_height_above(kind, curvature, p, t), square = 1 + t[0] * t[0] + t[1] * t[1];
+    double weight = m < 1 ? 1 / sqrt(square) : 1 / square;
+    double flat = p[2] - u;     /* curvature times the squared distance from the axis */
+    for (int k = 0; k < 2; k++) /* d(1 + t^2) = 2 t dt, and dt/dx = 2 curvature along an axis with a slope */
+        d[k] = -weight * t[k] * (1 + 4 * m * curvature * u / square);
+    d[2] = weight;
+    d[3] = -weight * (flat / curvature + 8 * m * u * flat / square);
+    return u * weight;
+}
+
 hf_fit_point hf_fit_point_take(const hf_fit_frame *f, int i)
 {
     hf_fit_point p = {0};
     hf_fit_locate(f, i, p.arm, p.at);
-    p.value = hf_cloud_error(f->kind, 1, f->curvature_per_m, p.at, p.d);
+    p.value = hf_fit_error(f->kind, 1, f->curvature_per_m, p.at, p.d);
     bend_error(f->kind, f->curvature_per_m, &p);
     hf_fit_derive(f, p.arm, p.by);
     return p;

@@ -54,6 +54,11 @@ typedef struct {
     double value, d[4], dd[4][4];     /* half-path error, with its derivatives by the coordinates */
 } hf_fit_point;
 
+/* Returns the error of a point p in metres, u / (1 + t^2)^m, with its height u above a surface of this
+ * curvature and the slope t there (M16). m is 1 for the half path and 1/2 along the normal. d [4]: derivatives
+ * by p and by the curvature. */
+double hf_fit_error(hf_surface_kind kind, double m, double curvature, const double p[3], double d[4]);
+
 /* Returns the index of the angle that a quantity stands for, or -1. */
 static inline int hf_fit_angle_of(int quantity)
 {

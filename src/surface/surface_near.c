@@ -4,14 +4,13 @@
  *       -> Gauss-Newton steps with this factor: turn, shift, curvature -> RMS at convergence
  *       -> if it does not converge or is not well inside the bounds: the caller uses hf_surface_fit_points
  *
- * Contents: a pose - rows of points - steps - a shape */
+ * Contents: a pose - rows of points - steps */
 #include "surface/surface_near.h"
 
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "linalg/dense.h"
 #include "net/target_surface.h"
-#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <string.h>
@@ -183,80 +182,4 @@ bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *posit
         memcpy(last, sum, sizeof last);
     }
     return false;
-}
-
-/* ---- a shape ---- */
-
-/* Copies the inner nodes to inner_m [3][n], in new memory of the arena. */
-static hf_status take_nodes(const hf_model *m, const double *position_m, void **block, double **inner_m)
-{
-    size_t n = (size_t)m->n_inner_node;
-    HF_TRY(HF_ARENA_ARRAYS(block, HF_ARRAY(*inner_m, 3 * n)));
-    for (size_t c = 0; c < 3; c++)
-        for (size_t k = 0; k < n; k++)
-            (*inner_m)[c * n + k] = position_m[(int)c * m->n_node + m->inner_row[k]];
-    return HF_OK;
-}
-
-hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
-                                 const double *position_m, const double *tension_N, hf_surface_design *design)
-{
-    void *block;
-    hf_facet_shape shape;
-    hf_surface_fit fit;
-    hf_fit_parameters parameters;
-    double *inner_m;
-    *design = (hf_surface_design){0};
-    HF_TRY(take_nodes(m, position_m, &block, &inner_m));
-    hf_status status =
-        hf_surface_fit_find(s->kind, s->focal_length_m, m->n_inner_node, inner_m, NULL, &fit, &parameters);
-    hf_arena_free_block(block);
-    HF_TRY(status);
-    design->nodes = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
-    if (!facets || facets->n_facet == 0) return HF_OK;
-    status = hf_facet_shape_take(m, position_m, tension_N, &shape);
-    if (status == HF_OK) status = hf_facet_fit(s, facets, &shape, &fit, &parameters);
-    hf_arena_free_block(shape.block);
-    HF_TRY(status);
-    design->facets = hf_surface_pose_of(s->kind, s->focal_length_m, &fit, &parameters);
-    return HF_OK;
-}
-
-static hf_status measure_nodes(const hf_surface_design *design, const hf_surface_settings *s, const hf_model *m,
-                               const double *position_m, hf_surface_paths *to)
-{
-    int n = m->n_inner_node;
-    void *block;
-    hf_surface_fit fit;
-    double *inner_m, sum = 0, curvature = 1 / (4 * s->focal_length_m);
-    HF_TRY(take_nodes(m, position_m, &block, &inner_m));
-    for (int k = 0; k < n; k++) {
-        double p[3] = {inner_m[k], inner_m[n + k], inner_m[2 * (size_t)n + (size_t)k]}, slope[2];
-        double above = hf_target_surface_height_above(s->kind, curvature, p, slope);
-        double path = above / (1 + slope[0] * slope[0] + slope[1] * slope[1]);
-        sum += path * path;
-    }
-    to->nodes_m = sqrt(sum / n);
-    hf_status status = HF_OK;
-    if (!hf_surface_fit_near(&design->nodes, n, inner_m, NULL, &to->nodes_fit_m)) {
-        status = hf_surface_fit_points(s->kind, s->focal_length_m, n, inner_m, NULL, &fit);
-        to->nodes_fit_m = fit.half_path_rms_m;
-    }
-    hf_arena_free_block(block);
-    return status;
-}
-
-hf_status hf_surface_measure_near(const hf_surface_design *design, const hf_surface_settings *s,
-                                  const hf_facets *facets, const hf_model *m, const double *position_m,
-                                  const double *tension_N, hf_surface_paths *to)
-{
-    hf_facet_shape shape;
-    *to = (hf_surface_paths){NAN, NAN, NAN, NAN};
-    HF_TRY(measure_nodes(design, s, m, position_m, to));
-    if (!facets || facets->n_facet == 0) return HF_OK;
-    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape);
-    if (status == HF_OK)
-        status = hf_facet_measure_near(&design->facets, s, facets, &shape, &to->facets_m, &to->facets_fit_m);
-    hf_arena_free_block(shape.block);
-    return status;
 }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "surface/surface_fit.h"
-#include <hifdm/facets.h>
 
 /* A fitted surface: z = curvature x^2 (+ y^2). In its frame, point p is at turn (p - center - shift) + center. */
 typedef struct {
@@ -23,24 +22,3 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
  * *half_path_rms_m has no meaning then. */
 bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
                          double *half_path_rms_m);
-
-/* Half-path RMS values of a shape, m. NaN: no shape or no fit. */
-typedef struct {
-    double nodes_m, nodes_fit_m, facets_m, facets_fit_m;
-} hf_surface_paths;
-
-/* The fits of a shape. Fits of similar shapes start from them. */
-typedef struct {
-    hf_surface_pose nodes, facets;
-} hf_surface_design;
-
-/* Finds the fits of a shape, position_m [3][n_node] by row and tension_N [n_cable]. `facets` may be NULL. Returns
- * HF_OK or HF_NO_MEMORY. */
-hf_status hf_surface_design_make(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
-                                 const double *position_m, const double *tension_N, hf_surface_design *design);
-
-/* Measures another shape of the same net like hf_surface_measure, usually in at most a tenth of its time. `facets` may
- * be NULL. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_surface_measure_near(const hf_surface_design *design, const hf_surface_settings *settings,
-                                  const hf_facets *facets, const hf_model *model, const double *position_m,
-                                  const double *tension_N, hf_surface_paths *paths);
