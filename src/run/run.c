@@ -27,11 +27,6 @@
 
 const char *const hf_run_phase_word[4] = {"form", "search", "refine", "tolerance"};
 
-void hf_run_report(const hf_run_control *control, hf_run_progress progress)
-{
-    if (control->observer) control->observer(control->observer_context, &progress);
-}
-
 /* Returns true for faults of the machine and for files in the way. The same command may succeed once they are
  * removed. */
 static bool is_of_machine(hf_status status)

@@ -48,7 +48,10 @@ static inline bool hf_run_must_stop(const hf_run *r)
 }
 
 /* Passes the progress to the observer, if there is one. */
-void hf_run_report(const hf_run_control *control, hf_run_progress progress);
+static inline void hf_run_report(const hf_run_control *control, hf_run_progress progress)
+{
+    if (control->observer) control->observer(control->observer_context, &progress);
+}
 
 typedef hf_status hf_run_stage(hf_run *run, hf_summary *summary, hf_messages *messages);
 
