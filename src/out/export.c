@@ -1,4 +1,4 @@
-/* Defines the table of exporters and the functions that they share. */
+/* Defines the functions that the exporters share. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -9,10 +9,6 @@
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
-
-#define ROW(name) &hf_exporter_##name,
-const hf_exporter *const hf_exporter_table[HF_N_EXPORTER] = {HF_EXPORTERS(ROW)};
-#undef ROW
 
 hf_status hf_export_claim(const hf_export_request *o, const char *path, hf_messages *messages)
 {
