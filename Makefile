@@ -72,7 +72,7 @@ COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) $(if $
   -Iinclude -Isrc $(PKG_CFLAGS)
 LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
 
-# Build information. Only store/store.c is compiled with it, because it writes it into result files. `make dist` leaves
+# Build information. Only store/provenance.c is compiled with it, because it writes it into result files. `make dist` leaves
 # the commit in .describe.
 GIT_DESCRIBE = $(shell test -e .git && git describe --always --dirty --tags 2>/dev/null || \
   cat .describe 2>/dev/null || echo unknown)
@@ -214,9 +214,10 @@ mutants-random: ## N edits at random places that SEED draws: which do the tests 
 	$(Q)tools/setup.sh --test
 	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants_random.py --seed $(SEED) --n $(N) $(MUTANTS_ARGS)
 
-abi: ## does the shared library export what the public headers declare, and nothing that was there before is gone?
+abi: ## does the library export what the public headers declare, and nothing is gone? do files call in cycles?
 	$(SUB) $(SHARED)
 	$(Q)$(PYTHON) tools/abi.py $(SHARED)
+	$(Q)$(PYTHON) tools/cycles.py $(BUILD)
 
 attack: ## 200 kills, 500 failing calls and 5000 flipped bits that SEED draws: results/release/attack-VERSION.log
 	$(Q)tools/setup.sh --test
@@ -456,8 +457,8 @@ $(BUILD)/lapack: FORCE
 
 $(BUILD)/src/linalg/lapack.o: $(BUILD)/lapack
 $(BUILD)/src/linalg/lapack.o: EXTRA = -DHF_LAPACK='$(foreach name,$(LAPACK),"$(name)",)'
-$(BUILD)/src/store/store.o: $(BUILD)/info
-$(BUILD)/src/store/store.o: EXTRA = $(BUILD_INFO)
+$(BUILD)/src/store/provenance.o: $(BUILD)/info
+$(BUILD)/src/store/provenance.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/tests/%.o: EXTRA = -Itests $(filter-out -l%,$(CHECK))
 
 # On other machines than x86-64 all of them are the portable one, and the program chooses that.

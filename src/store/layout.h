@@ -2,8 +2,8 @@
  * members that they come from. <hifdm/store.h> describes the whole file for a reader; hdf5.h has the calls that write
  * and read.
  *
- * Other files describe the rest: generations.c the rows of generations; store.c the provenance, the case, ids,
- * sets and facets of the scene, the history and the design variables; store_tolerance.c the as-built samples;
+ * Other files describe the rest: generations.c the rows of generations; provenance.c the provenance; store.c the case,
+ * ids, sets and facets of the scene, the history and the design variables; store_tolerance.c the as-built samples;
  * store_resume.c the marks of a session and the state of the refinement; vtkhdf.c the group /VTKHDF.
  *
  * A new data set per node or cable is a row of scene_column or shape_column (layout.c). A new attribute is a row of a

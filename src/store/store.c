@@ -7,12 +7,13 @@
  *     hf_store_complete      writes the summary of the finished run and closes the file
  *     hf_store_settle        syncs the file, gives it the visible name, removes the journal
  *
- * Sections: provenance, case and scene, beginning, shapes, generations, summary, publishing, the end. */
+ * Sections: case and scene, beginning, shapes, generations, summary, publishing, the end. */
 #include <hifdm/store.h>
 
 #include "base/clock.h"
 #include "base/path.h"
 #include "linalg/lapack.h"
+#include "store/provenance.h"
 #include "store/store_internal.h"
 #include "store/vtkhdf.h"
 
@@ -24,20 +25,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#ifndef HF_VERSION /* the Makefile defines the four macros below */
-#define HF_VERSION "unknown"
-#endif
-#ifndef HF_GIT_DESCRIBE
-#define HF_GIT_DESCRIBE "unknown"
-#endif
-#ifndef HF_COMPILER
-#define HF_COMPILER "unknown"
-#endif
-#ifndef HF_BUILD_FLAGS
-#define HF_BUILD_FLAGS "unknown"
-#endif
-
-#define ARGUMENTS_MAX 4000 /* maximum number of stored arguments; an attribute holds 64 KiB */
 /* A publication is due when PUBLISH_RATIO times the duration of the last one has passed. Publishing then takes 2 % of
  * the run. At least PUBLISH_S must have passed, so that most short runs are published only at their beginning and their
  * end. The tests of the store, of resuming and of interrupting pass with ratios from 5 to 500 and times from 0.05 to 5
@@ -48,13 +35,6 @@
  * stopping rule may leave a difference of 1e-6 between two builds. The tests of the store, of resuming and of
  * interrupting pass from 1e-9 to 1e-4; with 1e-2 one fails. */
 #define SAME_SHAPE 1e-5
-
-const char *const hf_stage_group[HF_N_STAGE + 1] = {"/form", "/search", "/refine", "/"};
-
-const char *hf_store_version(void)
-{
-    return HF_VERSION " (" HF_GIT_DESCRIBE ")";
-}
 
 #define SETUP_BYTES (1 << 20) /* HDF5 1.10.8 needs less than 400 kB to set itself up */
 
@@ -70,33 +50,7 @@ bool hf_store_quiet(void)
     return true;
 }
 
-/* ---- provenance, case, scene ---- */
-
-static void put_provenance(hf_store *s, int argc, char *const *argv)
-{
-    char host[256] = "", hdf5[32];
-    unsigned major = 0, minor = 0, release = 0;
-    if (gethostname(host, sizeof host - 1) != 0) host[0] = '\0';
-    H5get_libversion(&major, &minor, &release);
-    snprintf(hdf5, sizeof hdf5, "%u.%u.%u", major, minor, release);
-    const char *const table[][2] = {{"version", HF_VERSION},
-                                    {"git_describe", HF_GIT_DESCRIBE},
-                                    {"compiler", HF_COMPILER},
-                                    {"build_flags", HF_BUILD_FLAGS},
-                                    {"hdf5_version", hdf5},
-                                    {"gsl_version", gsl_version},
-                                    {"lapack", hf_lapack_library()},
-                                    {"rng", "splitmix64 keyed by (seed, generation, individual)"},
-                                    {"host", host}};
-    for (int i = 0; i < HF_HDF5_COUNT(table); i++)
-        hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", table[i][0], table[i][1]);
-    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "program", HF_PROGRAM);
-    hf_hdf5_put(&s->f.io, s->f.io.file, "/", "format_version", HF_KIND_INT, 0, &(int){HF_FORMAT_VERSION});
-    if (argc > ARGUMENTS_MAX) argc = ARGUMENTS_MAX;
-    if (argc > 0) hf_hdf5_put(&s->f.io, s->f.io.file, "/", "argv", HF_KIND_TEXT, (hsize_t)argc, argv);
-    hf_store_put_job(s);
-    hf_store_put_time(s, "started_utc");
-}
+/* ---- case, scene ---- */
 
 static void write_text(hf_hdf5 *io, hid_t group, const char *name, const char *description, const char *text)
 {
@@ -173,7 +127,7 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
         s->f.io.status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (s->f.io.status == HF_OK) {
         hf_store_file_create(&s->f);
-        put_provenance(s, argc, argv);
+        hf_provenance_put(&s->f.io, argc, argv);
         hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "identity", s->identity);
         signed char keeps = s->f.earlier != HF_EARLIER_NONE;
         hf_hdf5_put(&s->f.io, s->f.io.file, "/", HF_KEEPS_EARLIER, HF_KIND_FLAG, 0, &keeps);
@@ -408,7 +362,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
     if (finished) hf_vtkhdf_put_result(io, summary);
     if (finished) hf_renamed_link(io, s->rows.has_rows || hf_hdf5_has(io, io->file, "/variable/row"));
     hf_hdf5_put_chars(io, io->file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");
-    hf_store_put_time(s, finished ? "finished_utc" : "published_utc");
+    hf_provenance_put_time(&s->f.io, finished ? "finished_utc" : "published_utc");
 }
 
 /* ---- publishing ---- */

@@ -1,8 +1,8 @@
 #include "store/store_internal.h"
-#include "store/store_read.h"
+
+#include "store/store_open.h"
 
 #include <stdlib.h>
-#include <time.h>
 
 void hf_store_free(hf_store *s, hf_messages *messages)
 {
@@ -50,23 +50,11 @@ hf_status hf_store_hand_over(hf_store *s, hf_store **store)
     return hf_hdf5_unlock(status);
 }
 
-void hf_store_put_time(hf_store *s, const char *attribute)
+void hf_store_put_refine(hf_store *s, bool finished)
 {
-    char text[32] = "";
-    time_t now = time(NULL);
-    struct tm utc;
-    if (gmtime_r(&now, &utc)) strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", attribute, text);
-}
-
-void hf_store_put_job(hf_store *s)
-{
-    static const char *const table[][2] = {{"slurm_job_id", "SLURM_JOB_ID"},
-                                           {"slurm_array_job_id", "SLURM_ARRAY_JOB_ID"},
-                                           {"slurm_array_task_id", "SLURM_ARRAY_TASK_ID"},
-                                           {"slurm_restart_count", "SLURM_RESTART_COUNT"}};
-    for (int i = 0; i < HF_HDF5_COUNT(table); i++) {
-        const char *value = getenv(table[i][1]);
-        if (value) hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", table[i][0], value);
-    }
+    hf_hdf5 *io = &s->f.io;
+    if (finished || s->refine) hf_layout_renew(io, io->file, HF_REFINE_STATE);
+    if (!finished && s->refine)
+        hf_hdf5_write_list(io, io->file, HF_REFINE_STATE, HF_KIND_REAL, (int)s->n_refine, 0, "",
+                           "where Levenberg-Marquardt was told to stop", s->refine);
 }

@@ -53,10 +53,6 @@ void hf_store_free(hf_store *s, hf_messages *messages);
 /* Begins a call that uses the file: takes the lock of HDF5 and opens the file. The caller releases the lock. */
 hf_hdf5 *hf_store_enter(hf_store *s, hf_messages *messages);
 
+#define HF_REFINE_STATE "/refine_state"
 /* Writes the state of hf_store_refine to a file that is published, and removes it from a finished file. */
 void hf_store_put_refine(hf_store *s, bool finished);
-
-/* hf_store_put_time writes the present time in UTC as an attribute of the root. hf_store_put_job writes the ids of the
- * Slurm job, by which its logs can be found. */
-void hf_store_put_time(hf_store *s, const char *attribute);
-void hf_store_put_job(hf_store *s);

@@ -8,6 +8,7 @@
  *
  * hf_store_recover does the same without a run: it makes the optimiser from the file alone and publishes the result.
  * Sections: state of the file, proposing again, refinement, recovery. */
+#include "store/provenance.h"
 #include "store/store_internal.h"
 #include "store/store_read.h"
 
@@ -82,8 +83,8 @@ static void note_session(hf_store *s)
     hf_hdf5_put(&s->f.io, s->f.io.file, "/", "sessions", HF_KIND_INT, 0, &(int){n + 1});
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_host", host);
     hf_hdf5_put_chars(&s->f.io, s->f.io.file, "/", "resumed_version", hf_store_version());
-    hf_store_put_job(s);
-    hf_store_put_time(s, "resumed_utc");
+    hf_provenance_put_job(&s->f.io);
+    hf_provenance_put_time(&s->f.io, "resumed_utc");
 }
 
 /* Checks an object of a resumed file. Data that are written later, by name, must go into this file and nowhere else.
@@ -258,8 +259,6 @@ hf_status hf_store_restore(hf_store *s, hf_optimiser *optimiser, hf_summary *sum
 
 /* ---- refinement ---- */
 
-#define REFINE_STATE "/refine_state"
-
 static hf_status make_refine(hf_store *s, size_t n)
 {
     if (n == s->n_refine) return HF_OK;
@@ -288,10 +287,10 @@ hf_status hf_store_restore_refine(hf_store *s, double *wall_s, size_t *n, const 
     *state = NULL;
     if (!s || !s->is_resumed) return HF_OK;
     hf_hdf5 *io = hf_store_enter(s, messages);
-    if (hf_hdf5_has(io, io->file, REFINE_STATE)) {
-        int n_value = hf_hdf5_length(io, io->file, REFINE_STATE, HF_LAYOUT_COUNT_MAX);
+    if (hf_hdf5_has(io, io->file, HF_REFINE_STATE)) {
+        int n_value = hf_hdf5_length(io, io->file, HF_REFINE_STATE, HF_LAYOUT_COUNT_MAX);
         if (io->status == HF_OK && make_refine(s, (size_t)n_value) == HF_OK)
-            hf_hdf5_read_list(io, io->file, REFINE_STATE, HF_KIND_REAL, n_value, 0, s->refine);
+            hf_hdf5_read_list(io, io->file, HF_REFINE_STATE, HF_KIND_REAL, n_value, 0, s->refine);
         if (io->status == HF_OK) {
             *wall_s = s->refine[0];
             *n = s->n_refine - 1;
@@ -299,15 +298,6 @@ hf_status hf_store_restore_refine(hf_store *s, double *wall_s, size_t *n, const 
         }
     }
     return hf_hdf5_unlock(io->status);
-}
-
-void hf_store_put_refine(hf_store *s, bool finished)
-{
-    hf_hdf5 *io = &s->f.io;
-    if (finished || s->refine) hf_layout_renew(io, io->file, REFINE_STATE);
-    if (!finished && s->refine)
-        hf_hdf5_write_list(io, io->file, REFINE_STATE, HF_KIND_REAL, (int)s->n_refine, 0, "",
-                           "where Levenberg-Marquardt was told to stop", s->refine);
 }
 
 /* ---- recovery ---- */
