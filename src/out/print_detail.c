@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#define SHOWN_MM 5e-5 /* smaller lengths, in mm, print as 0.0000, so they have no relative change */
+
 /* ---- parts ---- */
 
 static void print_result(const hf_form_result *r, FILE *f)
@@ -24,6 +26,38 @@ static void print_sets(const hf_set_tensions *s, FILE *f)
     for (int k = 0; k < s->n; k++)
         fprintf(f, "%s %s %s", k ? "," : "", s->name[k], hf_print_decimals(s->ratio[k]).text);
     fputc('\n', f);
+}
+
+void hf_print_gained(double psi_m, double initial_psi_m, const char *of, FILE *f)
+{
+    if (!(initial_psi_m * 1e3 >= SHOWN_MM) || !isfinite(initial_psi_m)) return;
+    fprintf(f, ", %s %s (%s mm)", hf_print_change(psi_m, initial_psi_m).text, of,
+            hf_print_decimals(initial_psi_m * 1e3).text);
+}
+
+void hf_print_iterations(const hf_form_result *r, FILE *f)
+{
+    static const char *const before[] = {
+        "", "", "converged after ", "ended by stop: rms_change after ", "not converged after ", "no shape after "};
+    bool is_known = r->stop_reason <= HF_STOPPED_ILL_POSED;
+    bool is_direct = r->stop_reason == HF_STOPPED_DIRECT;
+    fprintf(f, "%s%d %s%s", is_known ? before[r->stop_reason] : "", r->iterations,
+            is_direct ? "linear solve" : "iteration", r->iterations == 1 ? "" : "s");
+}
+
+void hf_print_generations(const hf_search_summary *s, FILE *f)
+{
+    static const char *const before[] = {"", "stagnation after ", "", ""};
+    fprintf(f, "%s%d generation%s", before[s->algorithm_stop], s->generations, s->generations == 1 ? "" : "s");
+}
+
+void hf_print_steps(const hf_refine_summary *r, FILE *f)
+{
+    static const char *const before[] = {"converged", "stalled", "not converged", "settled", "none"};
+    static const char *const why[] = {"", ": shorter steps gain nothing", "", ": the last ten gained less than 1e-6",
+                                      ""};
+    fprintf(f, "%s after %d step%s%s", before[r->algorithm_stop], r->steps, r->steps == 1 ? "" : "s",
+            why[r->algorithm_stop]);
 }
 
 /* Returns the name of a limit: "boundary_ratio_cap", or a row of optimize.limits. */

@@ -13,7 +13,6 @@
 #define OBJECTIVES_SHOWN 4     /* objectives in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* higher frequencies come from errors that are only rounding */
 #define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
-#define SHOWN_MM 5e-5          /* smaller lengths, in mm, print as 0.0000, so they have no relative change */
 
 /* Returns the result of a stage, and that of the form-finding without one (HF_N_STAGE). */
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
@@ -66,13 +65,6 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
           : m->is_measured ? " (Ruze, from the nodes)"
                            : " (Ruze, from psi)",
           f);
-}
-
-void hf_print_gained(double psi_m, double initial_psi_m, const char *of, FILE *f)
-{
-    if (!(initial_psi_m * 1e3 >= SHOWN_MM) || !isfinite(initial_psi_m)) return;
-    fprintf(f, ", %s %s (%s mm)", hf_print_change(psi_m, initial_psi_m).text, of,
-            hf_print_decimals(initial_psi_m * 1e3).text);
 }
 
 /* Prints the reduction of psi by the optimisation. A search evaluates the initial design under its rule, so that design
@@ -220,31 +212,6 @@ static void print_figures(const hf_summary *s, const char *name, const hf_form_r
     print_bound(r, f);
     if (r->n_slack) fprintf(f, "  %d slack cable%s;", r->n_slack, r->n_slack == 1 ? "" : "s");
     if (r->n_loose) fprintf(f, "  %d loose node%s;", r->n_loose, r->n_loose == 1 ? "" : "s");
-}
-
-void hf_print_iterations(const hf_form_result *r, FILE *f)
-{
-    static const char *const before[] = {
-        "", "", "converged after ", "ended by stop: rms_change after ", "not converged after ", "no shape after "};
-    bool is_known = r->stop_reason <= HF_STOPPED_ILL_POSED;
-    bool is_direct = r->stop_reason == HF_STOPPED_DIRECT;
-    fprintf(f, "%s%d %s%s", is_known ? before[r->stop_reason] : "", r->iterations,
-            is_direct ? "linear solve" : "iteration", r->iterations == 1 ? "" : "s");
-}
-
-void hf_print_generations(const hf_search_summary *s, FILE *f)
-{
-    static const char *const before[] = {"", "stagnation after ", "", ""};
-    fprintf(f, "%s%d generation%s", before[s->algorithm_stop], s->generations, s->generations == 1 ? "" : "s");
-}
-
-void hf_print_steps(const hf_refine_summary *r, FILE *f)
-{
-    static const char *const before[] = {"converged", "stalled", "not converged", "settled", "none"};
-    static const char *const why[] = {"", ": shorter steps gain nothing", "", ": the last ten gained less than 1e-6",
-                                      ""};
-    fprintf(f, "%s after %d step%s%s", before[r->algorithm_stop], r->steps, r->steps == 1 ? "" : "s",
-            why[r->algorithm_stop]);
 }
 
 static void print_search(const hf_summary *s, bool is_result, FILE *f)
