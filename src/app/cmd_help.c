@@ -3,16 +3,6 @@
 
 #include <string.h>
 
-const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
-    {"0", "done"},
-    {"1", "files differ"},
-    {"2", "bad usage or case"},
-    {"3", "not converged, no feasible design, or points of a sweep failed"},
-    {"4", "ill-posed"},
-    {"5", "input/output"},
-    {"75", "told to stop"},
-};
-
 #define WIDTH 100 /* width of the help in columns; a longer word has a line of its own */
 
 void hf_help_wrap(const char *text, int indent, int column, FILE *f)
@@ -46,11 +36,11 @@ static void print_row(const char *name, int indent, int help_column, const char 
     hf_help_wrap(help, help_column, column, f);
 }
 
-static void print_overview(FILE *f)
+static void print_overview(const hf_command *const *commands, FILE *f)
 {
     fputs("hifdm - " HF_HELP_SUMMARY "\n\n", f);
     for (int i = 0; i < HF_N_COMMAND; i++) {
-        const hf_command *c = hf_command_table[i];
+        const hf_command *c = commands[i];
         char name[64];
         snprintf(name, sizeof name, "hifdm %-8s %s", c->name, hf_help_or_nothing(c->argument));
         print_row(name, 2, 27, c->help, f);
@@ -91,13 +81,13 @@ static hf_status command_help(const hf_options *o, FILE *file, hf_messages *mess
 {
     (void)messages;
     if (o->help_as == HF_HELP_MAN)
-        hf_help_man(file);
+        hf_help_man(o->commands, file);
     else if (o->help_as == HF_HELP_BASH)
-        hf_help_bash(file);
+        hf_help_bash(o->commands, file);
     else if (o->topic)
         print_command(o->topic, file);
     else
-        print_overview(file);
+        print_overview(o->commands, file);
     return HF_OK;
 }
 

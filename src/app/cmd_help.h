@@ -16,8 +16,8 @@ extern const struct hf_help_exit {
 void hf_help_wrap(const char *text, int indent, int column, FILE *file);
 
 /* Print the manual page for man(1), and the completion script for bash. The caller checks the stream for errors. */
-void hf_help_man(FILE *file);
-void hf_help_bash(FILE *file);
+void hf_help_man(const hf_command *const *commands, FILE *file);
+void hf_help_bash(const hf_command *const *commands, FILE *file);
 
 static inline const char *hf_help_space_before(const char *word)
 {

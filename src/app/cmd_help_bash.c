@@ -51,10 +51,10 @@ static const char bash_tail[] = "    esac\n"
                                 "\n"
                                 "complete -F _hifdm hifdm\n";
 
-static void bash_commands(FILE *f)
+static void bash_commands(const hf_command *const *commands, FILE *f)
 {
     for (int i = 0; i < HF_N_COMMAND; i++)
-        fprintf(f, "%s%s", i ? " " : "", hf_command_table[i]->name);
+        fprintf(f, "%s%s", i ? " " : "", commands[i]->name);
 }
 
 /* Prints what may follow an option: files, folders or words. Nothing is proposed for a number. */
@@ -97,7 +97,7 @@ static void bash_words(const char *list, const char *between, const hf_field *fi
 }
 
 /* Prints the values of all options and keys. */
-static void bash_values(FILE *f)
+static void bash_values(const hf_command *const *commands, FILE *f)
 {
     for (int i = 0; i < hf_n_option; i++) {
         const hf_option o = hf_option_at(i);
@@ -105,7 +105,7 @@ static void bash_values(FILE *f)
         if (!o.argument) continue;
         fputs("    ", f);
         for (int k = 0; k < HF_N_COMMAND; k++) {
-            const hf_command *c = hf_command_table[k];
+            const hf_command *c = commands[k];
             if (!hf_option_goes_with(&o, c)) continue;
             fprintf(f, "%s%s:%s", n++ ? " | " : "", c->name, o.name);
             if (o.letter) fprintf(f, " | %s:%s", c->name, o.letter);
@@ -134,15 +134,15 @@ static void bash_explained(FILE *f)
     fputs("' ;;\n", f);
 }
 
-void hf_help_bash(FILE *f)
+void hf_help_bash(const hf_command *const *commands, FILE *f)
 {
     fputs(bash_head, f);
-    bash_commands(f);
+    bash_commands(commands, f);
     fputs(bash_equals, f);
-    bash_values(f);
+    bash_values(commands, f);
     fputs(bash_options, f);
     for (int i = 0; i < HF_N_COMMAND; i++) {
-        const hf_command *c = hf_command_table[i];
+        const hf_command *c = commands[i];
         fprintf(f, "    %s:-*) words='", c->name);
         for (int k = 0, n = 0; k < hf_n_option; k++) {
             const hf_option o = hf_option_at(k);
@@ -153,7 +153,7 @@ void hf_help_bash(FILE *f)
         fprintf(f, "    %s:*) ", c->name);
         if (!strcmp(c->argument, "[COMMAND]")) {
             fputs("words='", f);
-            bash_commands(f);
+            bash_commands(commands, f);
             fputs("' ;;\n", f);
         } else if (!strcmp(c->argument, "[WORD...]")) {
             bash_explained(f);

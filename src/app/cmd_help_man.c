@@ -6,6 +6,16 @@
 
 #include <string.h>
 
+const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
+    {"0", "done"},
+    {"1", "files differ"},
+    {"2", "bad usage or case"},
+    {"3", "not converged, no feasible design, or points of a sweep failed"},
+    {"4", "ill-posed"},
+    {"5", "input/output"},
+    {"75", "told to stop"},
+};
+
 /* Writes text escaped for troff. No line begins with a request, and '-' remains a plain hyphen that can be copied.
  * Lists of words may be broken between lines. */
 static void put_roff(const char *text, FILE *f)
@@ -91,7 +101,7 @@ static void man_list(const hf_list *list, FILE *f)
     }
 }
 
-void hf_help_man(FILE *f)
+void hf_help_man(const hf_command *const *commands, FILE *f)
 {
     fprintf(f,
             ".\\\" Made by `hifdm help --man` from its tables of commands, options and keys.\n"
@@ -99,7 +109,7 @@ void hf_help_man(FILE *f)
             "\n.SH SYNOPSIS\n.nf\n",
             hf_store_version());
     for (int i = 0; i < HF_N_COMMAND; i++) {
-        const hf_command *c = hf_command_table[i];
+        const hf_command *c = commands[i];
         fprintf(f, "\\fBhifdm %s\\fR%s\\fI%s\\fR [\\fIoption\\fR]...\n", c->name, hf_help_space_before(c->argument),
                 hf_help_or_nothing(c->argument));
     }
@@ -111,7 +121,7 @@ void hf_help_man(FILE *f)
              f);
     fputs(".SH COMMANDS\n", f);
     for (int i = 0; i < HF_N_COMMAND; i++)
-        man_command(hf_command_table[i], f);
+        man_command(commands[i], f);
     fputs(".SH CASE FILE\nYAML. Lengths are in metres, forces in newtons; the unit is the last part of a name.\n", f);
     for (int i = 0; i < hf_n_field; i++)
         man_field(&hf_field_table[i], hf_field_table[i].path, f);

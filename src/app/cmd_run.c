@@ -1,6 +1,6 @@
-/* `hifdm run` computes one case and writes its result file. */
-#include "app/cmd_run.h"
-
+/* `hifdm run` computes one case and writes its result file. `hifdm tolerance` does the same for a case with a section
+ * tolerance, as a whole or as one task of several. */
+#include "app/cmd.h"
 #include "app/output.h"
 #include "app/progress.h"
 #include "base/signals.h"
@@ -18,7 +18,7 @@ static hf_status check_tasks(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
-hf_status hf_cmd_run_case(const hf_options *o, FILE *file, hf_messages *messages)
+static hf_status run_case(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static hf_summary summary;
     char output[HF_OUTPUT_SIZE];
@@ -59,5 +59,21 @@ const hf_command hf_cmd_run = {
                 "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5\n"
                 "hifdm run case.yaml --point front.h5:7 -o point7.h5",
     .uses_threads = true,
-    .run = hf_cmd_run_case,
+    .run = run_case,
+};
+
+const hf_command hf_cmd_tolerance = {
+    .name = "tolerance",
+    .argument = "CASE",
+    .help = "compute samples of the as-built net with the errors in section tolerance",
+    .about =
+        "This command works like hifdm run, for a case with a section tolerance. The shape of the result gives the "
+        "cut lengths of the cables. hifdm solves the net again with errors of lengths, stiffness, supports and "
+        "temperature. The tasks of a job array share the samples, and each task stores its own beside FILE. The same "
+        "command without --task combines these samples. The result is bit-identical to that of one run.",
+    .examples = "hifdm tolerance case.yaml -o case.h5\n"
+                "hifdm tolerance case.yaml -o case.h5 --task 3 --tasks 16\n"
+                "hifdm tolerance case.yaml -o case.h5 --tasks 16",
+    .uses_threads = true,
+    .run = run_case,
 };

@@ -88,7 +88,7 @@ int main(int argc, char **argv)
 {
     hf_options options;
     hf_messages messages = {0};
-    hf_status status = hf_options_parse(argc, argv, &options, &messages);
+    hf_status status = hf_options_parse(argc, argv, hf_command_table, &options, &messages);
     bool uses_threads = status == HF_OK && options.command->uses_threads;
     int exit_status;
     signal(SIGCHLD, SIG_DFL); /* if a launcher ignores it, the end of a child cannot be read */

@@ -275,15 +275,21 @@ static bool takes_two(const hf_command *command)
     return command->argument && strchr(command->argument, ' ');
 }
 
-static hf_status find_command(const char *word, const hf_command **command, hf_messages *messages)
+static bool is_help(const hf_command *command)
+{
+    return !strcmp(command->name, "help");
+}
+
+static hf_status find_command(const char *word, const hf_command *const *commands, const hf_command **command,
+                              hf_messages *messages)
 {
     const char *names[HF_N_COMMAND];
     for (int i = 0; i < HF_N_COMMAND; i++) {
-        const hf_command *c = *command = hf_command_table[i];
+        const hf_command *c = *command = commands[i];
         names[i] = c->name;
         bool is_dashed = !strncmp(word, "--", 2) && !strcmp(word + 2, c->name); /* --help, --version */
         if (!strcmp(word, c->name) || (is_dashed && !needs_argument(c))) return HF_OK;
-        if (!strcmp(word, "-h") && c == &hf_cmd_help) return HF_OK;
+        if (!strcmp(word, "-h") && is_help(c)) return HF_OK;
     }
     return unknown("command", word, names, HF_N_COMMAND, "", messages);
 }
@@ -360,23 +366,24 @@ static hf_status read_words(int argc, char *const *argv, const hf_command *comma
     return HF_OK;
 }
 
-hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages)
+hf_status hf_options_parse(int argc, char *const *argv, const hf_command *const *commands, hf_options *options,
+                           hf_messages *messages)
 {
     const hf_command *command;
-    *options = (hf_options){.argc = argc, .argv = argv, .task = -1};
+    *options = (hf_options){.commands = commands, .argc = argc, .argv = argv, .task = -1};
     if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "there is no command; 'hifdm help' lists the commands");
-    HF_TRY(find_command(argv[1], &command, messages));
+    HF_TRY(find_command(argv[1], commands, &command, messages));
     options->command = command;
     options->set = calloc((size_t)argc, sizeof *options->set);
     if (!options->set) return hf_error(messages, HF_NO_MEMORY, "out of memory");
     HF_TRY(read_words(argc, argv, command, options, messages));
-    if (command == &hf_cmd_help && options->file && !options->help)
-        HF_TRY(find_command(options->file, &options->topic, messages));
+    if (is_help(command) && options->file && !options->help)
+        HF_TRY(find_command(options->file, commands, &options->topic, messages));
     if (options->help) { /* hifdm COMMAND --help */
-        options->command = &hf_cmd_help;
+        HF_TRY(find_command("help", commands, &options->command, messages));
         options->topic = command;
     }
-    if (options->command == &hf_cmd_help) return HF_OK;
+    if (is_help(options->command)) return HF_OK;
     uint64_t cpus;
     const char *slurm = getenv("SLURM_CPUS_PER_TASK");
     if (!options->threads && slurm && hf_text_uint64(slurm, &cpus) && cpus >= 1 && cpus <= THREADS_MAX)

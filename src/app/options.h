@@ -13,7 +13,8 @@ typedef enum { HF_NEW_UNSAID, HF_NEW_PARABOLOID, HF_NEW_CYLINDER, HF_NEW_IMPORT 
 
 struct hf_options {
     const hf_command *command;
-    int argc; /* the whole command line, for the provenance of results */
+    const hf_command *const *commands; /* [HF_N_COMMAND] all commands */
+    int argc;                          /* the whole command line, for the provenance of results */
     char *const *argv;
     const char *file;                     /* the CASE or FILE; NULL for commands without one */
     const char *second;                   /* the other FILE of diff and report */
@@ -77,6 +78,7 @@ bool hf_option_goes_with(const hf_option *option, const hf_command *command);
 
 /* Reads the command line into *options. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_USAGE with a message that says what to
  * write instead. Call hf_options_free in any case. */
-hf_status hf_options_parse(int argc, char *const *argv, hf_options *options, hf_messages *messages);
+hf_status hf_options_parse(int argc, char *const *argv, const hf_command *const *commands, hf_options *options,
+                           hf_messages *messages);
 
 void hf_options_free(hf_options *options);
