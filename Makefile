@@ -72,8 +72,8 @@ COMPILE = $(CC) $(CFLAGS) $(LANGUAGE) $(CODEGEN) $(SANITIZER) $(WARNINGS) $(if $
   -Iinclude -Isrc $(PKG_CFLAGS)
 LINK = $(CC) $(CFLAGS) -fopenmp $(SANITIZER) $(LDFLAGS)
 
-# Build information. Only store/provenance.c is compiled with it, because it writes it into result files. `make dist` leaves
-# the commit in .describe.
+# Build information. Only store/provenance.c is compiled with it, because it writes it into result files. `make dist`
+# leaves the commit in .describe.
 GIT_DESCRIBE = $(shell test -e .git && git describe --always --dirty --tags 2>/dev/null || \
   cat .describe 2>/dev/null || echo unknown)
 COMPILER = $(shell $(CC) --version | head -n 1)
