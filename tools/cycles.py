@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Finds source files that call each other in a cycle: tools/cycles.py BUILD, after a build of the program.
 
-A file depends on another one if its object file uses a symbol that the other one defines. At most four cycles may exist,
-and none of more than three files. Prints each cycle with the symbols that close it."""
+A file depends on another one if its object file uses a symbol that the other one defines. At most four cycles may
+exist, and none of more than three files. Prints each cycle with the symbols that close it."""
 import subprocess
 import sys
 from pathlib import Path
