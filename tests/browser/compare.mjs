@@ -56,6 +56,6 @@ export async function checkUnlike(browser, tab, made, folder) {
   assert.ok((await said("a: 1\n", "a: 2\n")).includes("+ a: 2"));
   for (const end of ["", "b: 2\n"]) {
     const text = await said(long, `${end}${long}`);
-    assert.ok(text.includes("Only the first 600 lines") && !text.includes("are identical"), text);
+    assert.ok(text.includes("only the first 600 lines") && !text.includes("are identical"), text);
   }
 }

@@ -145,7 +145,7 @@ export async function checkTolerance(tab, made) {
   same(number(said.match(/samples\s+([\d.]+)/)[1]), 100 * t.histogram[most], 6);
   same(number(said.match(/of ([\d.]+) to/)[1]), 1e3 * (low + (most * (high - low)) / t.histogram.length), 5);
   const text = await tab.locator("#tolerance > p").first().innerText(),
-    said90 = /yield is at least 90\u00a0% if all tolerances are increased to ([\d.]+)\u00a0% of their values\.$/,
+    said90 = /If all tolerances are increased to ([\d.]+)\u00a0% of their values, the yield is at least 90\u00a0%\.$/,
     [, part] = text.match(said90);
   same(number(part), 100 * t.sigma_scale, 4);
   const rows = await tab.locator("#tolerance tbody th").allTextContents();
@@ -173,7 +173,7 @@ export async function checkFront(tab, made) {
   await tab.keyboard.press("Escape");
   assert.match(await tab.locator("#front code").textContent(), /^hifdm run .* --point .*\.h5:\d -o point\d\.h5$/);
   const whose = tab.locator("#answer + #whose:has(+ .figures)"); // before the first figure that is of no point
-  assert.match(await whose.textContent(), /^This page shows the shape after form-finding, which is not a point /);
+  assert.match(await whose.textContent(), /^This page shows the shape after form-finding. This shape is not a point /);
   assert.equal(await whose.locator("code").textContent(), await tab.locator("#front code").textContent());
   const row = tab.locator("#summary tr", { hasText: psi });
   same(number(await row.locator(".number").first().textContent()), 1e3 * initial[psi], 5);

@@ -56,7 +56,7 @@ export async function checkSurfaceOfStudy(tab, study) {
     text = await tab.locator("body").innerText();
   assert.ok(titles.includes("Surface error ψ, form"), titles.join("; ")); // the optimum's is met, and left out
   assert.ok(titles.includes("Objective tension tie") && !titles.includes("Objective psi"), titles.join("; "));
-  assert.match(text, /The objective psi is not listed separately, because it equals ψ\./);
+  assert.match(text, /The page does not list the objective psi separately, because this objective equals ψ\./);
   const ticks = await tab.locator("#sweep .chart svg[tabindex] text[text-anchor=middle]:not(.label)").allTextContents();
   assert.ok(ticks.every((t) => /^\d+$/.test(t)), `whole values, but ticks ${ticks.join("; ")}`);
   assert.match(text, /All points have EA boundary 200000 N/);

@@ -177,7 +177,7 @@ async function test(browser, page) {
     assert.equal(await chosen.getAttribute("value"), page.leads, "the axis at first is not the one that matters most");
     await tab.locator(`#sweep input[name=axis]:not([value="${page.leads}"])`).check();
     const flat = await tab.locator("#sweep > p.flat").innerText();
-    assert.match(flat, /^The following figures do not depend on pretension: .*error ψ/);
+    assert.match(flat, /^The following quantities do not depend on pretension: .*error ψ/);
     assert.equal(await tab.locator("#sweep .chart").count(), 0);
     await checkPoints(tab, page, made);
   } else {

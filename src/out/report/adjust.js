@@ -9,8 +9,8 @@ const FIGURE = { psi: "ψ", surface: "RMS along the normal", facets: "RMS of the
 const ADJUST_END = {
   target: "The target is met.",
   max_adjustments: "adjust.max_adjustments allows no further adjustment.",
-  doubt: "Another turnbuckle adjustment would reduce the error by less than the measurement uncertainty.",
-  none: "No further turnbuckle adjustment reduces the error of the net.",
+  doubt: "Another turnbuckle adjustment would reduce the surface error by less than the measurement uncertainty.",
+  none: "No further turnbuckle adjustment reduces the surface error of the net.",
 };
 const adjustments = (n) => (n === 1 ? "one turnbuckle adjustment" : `${fmtCount(n)} turnbuckle adjustments`);
 
@@ -21,7 +21,7 @@ const inMm = (v, digits = 4) => `${Math.abs(1e3 * v) < RESOLVED_MM ? rounded(0, 
 function adjustText(name) {
   const expected = (value, sigma) => `expected: ${inMm(value)} ± ${fmt(1e3 * sigma, 2)}`;
   return [
-    `${fmtCount(adjust.measured_nodes)} nodes were measured, and χ² is ${fmt(adjust.chi_square, 3)} per coordinate. ` +
+    `The measurement covers ${fmtCount(adjust.measured_nodes)} nodes. χ² per coordinate is ${fmt(adjust.chi_square, 3)}. ` +
       "χ² is about 1 if the case file states the tolerances and measurement errors correctly.",
     `The most probable net has a ${name} of ${inMm(adjust.estimated_m)}` +
       ` (${expected(adjust.estimated_expected_m, adjust.estimated_sigma_m)}).` +
@@ -34,21 +34,21 @@ function adjustText(name) {
           `${inMm(adjust.design_psi_m)}.`
         : "ψ is measured from the target positions.",
     adjust.end === "target" && adjust.adjusted_expected_m > adjust.target_m
-      ? "The error of the most probable net meets the target, but the expected error is larger than the target."
+      ? "The error of the most probable net meets the target. The expected error is larger than the target."
       : ADJUST_END[adjust.end] || "",
     adjust.maybe_slack
       ? `${fmtCount(adjust.maybe_slack)} cables may be slack. The measured positions do not show how slack these ` +
-        "cables are. The uncertainty of the values after adjustment is therefore larger than the ± value."
+        "cables are. Because of slack cables, the uncertainty after adjustment is larger than the ± value."
       : "",
     adjust.held_taut
       ? "The turnbuckle adjustments maintain the minimum tension in each cable. No additional cable becomes slack."
       : "",
-    adjust.supports_estimated ? "" : "All supports are assumed to be at the positions that the case file gives.",
+    adjust.supports_estimated ? "" : "The estimate assumes that all supports are at the positions in the case file.",
     adjust.settled ? "" : "The estimate has not converged.",
     adjust.fits
       ? ""
-      : "χ² is larger than chance explains. Tolerances or measurement errors may exceed those in the case file. " +
-        "Supports may be displaced, or the measured net may have a different design.",
+      : "χ² is larger than chance explains. Tolerances or measurement errors may exceed the values in the case file. " +
+        "Supports may be displaced. The measured net may also differ from the design in the case file.",
   ]
     .filter((text) => text)
     .join(" ");
@@ -211,8 +211,8 @@ function writeAdjust(view) {
           el(
             "p",
             {},
-            `Set ${familyName(adjust.set)}. A positive turnbuckle adjustment lengthens the cable. Click a name ` +
-              "to show the cable in the picture.",
+            `Set ${familyName(adjust.set)}. A positive turnbuckle adjustment lengthens the cable. Click a cable ` +
+              "name to show the cable in the picture.",
           ),
           adjustmentsTable(name, choose),
         ]

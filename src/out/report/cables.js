@@ -62,8 +62,8 @@ function cableColumns(before, after, families, choose) {
 }
 
 const CABLES_SAID =
-  "Click a heading to sort the table. Click a name to show the cable in the picture. Click a cable in the picture to " +
-  "move its row to the top.";
+  "Click a column heading to sort the table. Click a cable name to show the cable in the picture. Click a cable in the " +
+  "picture to move its row to the top.";
 
 // Returns the id of a cable as a button that shows the cable in the picture.
 function cableLink(e, choose) {
@@ -89,16 +89,16 @@ function writeCables(view) {
     change = columns.findIndex(({ size }) => size);
   const words = [
     otherShape
-      ? "The table lists the tensions of this result and of the other result."
+      ? "The table lists the cable tensions in this result and in the other result."
       : two
-        ? `The table lists the tensions after form-finding and those of the result (${after.name}).`
+        ? `The table lists the cable tensions after form-finding and in the result (${after.name}).`
         : null,
     columns.some(({ name }) => name.startsWith("unstressed minus"))
-      ? `The table shows how much the unstressed length of each cable differs from its value ${base}.`
+      ? `For each cable, the table lists the change of the unstressed length from its value ${base}.`
       : null,
-    adjust ? "If a length error is positive, the cable is too long." : null,
+    adjust ? "A positive length error means that the cable is too long." : null,
     net.psi_by_cut ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack." : null,
-    net.cable_share ? "The share of the error is the first-order contribution of the errors of a cable to ψ²." : null,
+    net.cable_share ? "The share of the error is a first-order estimate of the contribution of each cable to ψ²." : null,
   ].filter((text) => text);
   const all = sortableTable({
     caption: "Cables",

@@ -35,8 +35,8 @@ function caseDifferences() {
       ? el(
           "p",
           {},
-          `Only the first ${LINES_OF_CASE_MAX} lines of each case are compared. ` +
-            `The comparison ignores up to ${fmtCount(left)} further lines.`,
+          `The comparison covers only the first ${LINES_OF_CASE_MAX} lines of each case file. ` +
+            `The comparison ignores the remaining lines (at most ${fmtCount(left)}).`,
         )
       : null;
   if (!lines.length) return [left > 0 ? cut : el("p", {}, "The two case files are identical.")];
@@ -84,9 +84,9 @@ function writeOther() {
       "p",
       {},
       otherShape
-        ? "The two results have the same net. The pictures can show the shape of the other result. The table of " +
-            "cables lists the tensions of both results."
-        : "The two results have different nets, so this page compares only their figures.",
+        ? "The two results have the same net. The pictures can also show the shape of the other result. The table " +
+            "of cables lists the tensions of both results."
+        : "Because the two results have different nets, this page compares only the values in the table.",
     ),
     table(
       [

@@ -64,7 +64,7 @@ function frontChart(front, a, b) {
     yLabel: objectiveLabel(b),
     unit: objectiveUnit(b),
     caption: isFar
-      ? `The initial design lies outside the plotted range, at ${objectiveName(b)} ${objectiveText(b, initial.y)}.`
+      ? `The ${objectiveName(b)} of the initial design (${objectiveText(b, initial.y)}) is outside the plotted range.`
       : null,
     x: positions.map(({ x }) => x),
     counted: false,
@@ -108,8 +108,8 @@ function writeWhose(more) {
       "p",
       { class: "whose", id: "whose" },
       isFormFinding
-        ? "This page shows the shape after form-finding, which is not a point of the Pareto front."
-        : `This page shows the point of the front with the minimum ${objectiveName(Object.keys(front.initial)[0])}.` +
+        ? "This page shows the shape after form-finding. This shape is not a point of the Pareto front."
+        : `This page shows the point of the Pareto front with the minimum ${objectiveName(Object.keys(front.initial)[0])}.` +
             `${asBuilt ? " As-built nets are those of the form-finding, which is no point of the front." : ""}`,
       more.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
       " To get such a page for a point, make a result of it: ",

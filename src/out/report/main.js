@@ -26,7 +26,7 @@ function writeHead() {
     : "";
   document.getElementById("subtitle").textContent = found + truss;
   document.getElementById("footer").textContent = shown(
-    `The results in ${summary.file} were computed by hifdm ${summary.version}.`,
+    `Version ${summary.version} of hifdm computed the results in ${summary.file}.`,
   );
 }
 
@@ -207,7 +207,7 @@ function writeNet() {
     "The net",
     shapes.length
       ? null
-      : el("p", {}, "Form-finding found no shape, so the picture shows the net at its target positions."),
+      : el("p", {}, "Because form-finding found no shape, the picture shows the net at its target positions."),
     el(
       "div",
       { class: "tools" },
@@ -326,8 +326,8 @@ function writeMap() {
       el(
         "figcaption",
         { id: "map-caption" },
-        "The map shows the net at its target positions, viewed along z. Values between the nodes are interpolated. " +
-          "The height is positive above the target surface. Like ψ, the distance includes tangential displacements." +
+        "The map shows the net at its target positions, viewed along z. The map interpolates values between the nodes. " +
+          "The height is positive above the target surface. The distance includes tangential displacements, as ψ does." +
           (net.facets
             ? " The colour of a facet shows its mean error along the surface normal. The error is positive above the " +
               "target surface, or above the best fit to all facets."

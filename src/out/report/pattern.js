@@ -103,15 +103,14 @@ function patternText(all) {
   return (
     "The charts show the far field of the facets, computed by physical optics. " +
     `The feed is ${FEED[feed] || feed}${field}. The gain is relative to isotropic radiation, in the polarisation of ` +
-    "the feed. θ is the angle from +z. A cut is the half plane at the angle φ from +x towards +y." +
-    (stride > 1 ? ` Each plotted value is the maximum gain of ${stride} neighbouring angles.` : "")
+    "the feed. θ is the angle from +z. Each cut is the half plane at the angle φ from +x towards +y." +
+    (stride > 1 ? ` Each plotted value is the maximum gain over ${stride} neighbouring angles.` : "")
   );
 }
 
 const PATTERN_NOTE =
-  "Sidelobe levels and cross-polarisation are given relative to the maximum of the beam. " +
-  "A dash (–) means that a value cannot be computed from the angles of the cut. " +
-  "Either the angle range of the cut is too small, or its angle spacing is too coarse.";
+  "Sidelobe levels and cross-polarisation levels are relative to the maximum of the beam. " +
+  "A dash (–) means that the angle range of the cut is too small or the angle spacing too coarse to compute the value.";
 
 function writePattern() {
   const all = patterns();

@@ -10,7 +10,7 @@ const spaced = ({ n, stride }) => {
   return at;
 };
 const scaled = (values, k) => values.map((v) => (typeof v === "number" ? v * k : null));
-const thinned = ({ stride }) => (stride > 1 ? ` Only one of every ${stride} values is plotted.` : "");
+const thinned = ({ stride }) => (stride > 1 ? ` The plot shows only one of every ${stride} values.` : "");
 
 function writeHistory() {
   const h = data.history;
@@ -45,15 +45,15 @@ function writeHistory() {
     "Tension ratio, inner cables",
     "inner_tension_ratio",
     "inner ratio",
-    "The tension ratio is the maximum tension divided by the minimum tension. If the tension ratio is 1, all " +
-      "tensions are equal.",
+    "The tension ratio of the inner cables is their maximum tension divided by their minimum tension. If the " +
+      "tension ratio is 1, all tensions are equal.",
     { yLabel: "T max / T min" },
   );
   add(
     "Tension ratio, boundary cables",
     "boundary_tension_ratio",
     "boundary ratio",
-    "The tension ratio is the maximum tension divided by the minimum tension of the boundary cables.",
+    "The tension ratio of the boundary cables is their maximum tension divided by their minimum tension.",
     { yLabel: "T max / T min" },
   );
   const residual = "The residual is the maximum unbalanced force at a free node. It is 0 in equilibrium.";
@@ -135,7 +135,7 @@ function writeSearch() {
         unit: "mm",
         x,
         head,
-        caption: "A generation that did not improve the best design has no mark.",
+        caption: "The plot has no marks for generations without an improvement of the best design.",
         series: [{ name: "change", values: change.map((v) => (v > 0 ? v : null)), colour: "--one", dots: true }],
       }),
     ),
@@ -180,13 +180,13 @@ function writeCoupling() {
         "Change of the elastic deformation",
         "step_m",
         "change (mm)",
-        "The plot shows the maximum displacement of the attachments of the net in each iteration.",
+        "The plot shows the maximum displacement of the attachments in each iteration.",
       ),
       one(
         "Maximum deflection",
         "deflection_max_m",
         "deflection (mm)",
-        "The plot shows the maximum deflection of the points at which the net is attached to the truss.",
+        "The plot shows the maximum deflection of the truss at the attachments of the net.",
       ),
       one(
         "Surface error ψ on the truss",
@@ -243,7 +243,7 @@ function writeTensions() {
   section(
     "tensions",
     "Tensions",
-    el("p", {}, "Each mark is one cable. The cables of each group are numbered in the order of the result file."),
+    el("p", {}, "Each mark is one cable. The cable numbers of each group follow the order of the result file."),
     el(
       "div",
       { class: "charts" },
@@ -491,7 +491,7 @@ function writeLoadCases() {
     el(
       "p",
       {},
-      `The table lists figures of the as-built net of ${design} in each load case. A load case consists of ` +
+      `The table lists values for the as-built net of ${design} in each load case. A load case consists of ` +
         "temperatures, loads and support displacements.",
     ),
     sortableTable({ caption: "Load cases of the as-built net", columns, n: loadCases.length, by: -1 }).node,

@@ -328,7 +328,7 @@ function drawFigures(study, figures, axis, others, stage, charts, note) {
     drawn = all.filter((f) => groups.length === 1 || isMap || changesAlong(f, groups, stage)),
     flat = all.filter((f) => !drawn.includes(f));
   note.textContent = flat.length
-    ? `The following figures do not depend on ${axis.name}: ${flat.map((f) => lowered(f.title)).join("; ")}.`
+    ? `The following quantities do not depend on ${axis.name}: ${flat.map((f) => lowered(f.title)).join("; ")}.`
     : "";
   const drawings = drawn.map((f) =>
     groups.length <= CURVES_MAX
@@ -348,9 +348,9 @@ function whatMatters(figure, shares) {
   const part = (share) => (share < LITTLE ? "less than 0.1\u00a0%" : percent(share, 2));
   const parts = shares.map(({ axis, share }) => `${axis.name} ${part(share)}`),
     rest = 1 - shares.reduce((sum, { share }) => sum + share, 0);
-  const both = rest > 0.005 ? `; the rest, ${part(rest)}, is their interaction` : "";
+  const both = rest > 0.005 ? ` Interactions of the axes contribute ${part(rest)}.` : "";
   const title = figure.title.replace(/^S/, "s");
-  return `The axes cause the following shares of the variance of ${title}: ${parts.join(", ")}${both}.`;
+  return `The axes contribute the following shares to the variance of ${title}: ${parts.join(", ")}.${both}`;
 }
 
 function writeCurves(study, axes, figures, mainStage) {
@@ -369,10 +369,10 @@ function writeCurves(study, axes, figures, mainStage) {
       .filter((a) => a.extend)
       .map((a) => {
         const end = headOf(a, a.label(study.best));
-        return `${lead.title} still decreases at the end of the axis, ${end}. Add points ${a.extend} this value.`;
+        return `${lead.title} still decreases at the end of the axis (${end}). Add points ${a.extend} this value.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
-    ...psi.map(({ objective }) => `The objective ${objective} is not listed separately, because it equals ψ.`),
+    ...psi.map(({ objective }) => `The page does not list the objective ${objective} separately, because this objective equals ψ.`),
     ...fixed.map((a) => `All completed points have ${headOf(a, a.only)}.`),
   ];
   const shares = lead
@@ -472,11 +472,14 @@ function writePoints(study, axes, figures, best) {
   if (study.meets_yield.includes("open"))
     notes.push(
       "A point is open if the required yield lies within the 95 % confidence interval of the computed yield. " +
-        "More samples of an open point are needed.",
+        "Compute more samples of each open point.",
     );
-  if (best >= 0) notes.push("The best point is marked. Click a heading to sort the table.");
+  if (best >= 0) notes.push("The best point is marked. Click a column heading to sort the table.");
   if (study.page.some((p) => p))
-    notes.push("The last column links to the report of each point, or to its result file if there is no report.");
+    notes.push(
+      "The last column links to the report of each point. If a point has no report, the last column links to its " +
+        "result file.",
+    );
   else if (study.file.some((p) => p)) notes.push("The last column links to the result file of each point.");
   const points = sortableTable({
     caption: "Points",

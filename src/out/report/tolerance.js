@@ -51,7 +51,7 @@ function toleranceChart(t) {
     counted: false,
     log: false,
     caption:
-      `Each bar shows the share of the samples in one of ${n} intervals of ψ.` +
+      `Each bar shows the share of samples in one of ${n} intervals of ψ.` +
       (far.length ? ` ${far.join("; ")}.` : ""),
     head: (i) => `ψ of ${edge(i)} to ${edge(i + 1)} mm`,
     series: [{ name: "samples", values: scaled(t.histogram, 100), colour: "--one", bars: width / 2 }],
@@ -70,13 +70,13 @@ function scaleText(t) {
     required = percent(t.required_yield);
   if (t.scale_bound > 0)
     return (
-      ` The yield is at least ${required} if all tolerances are increased to ${part} of their values.` +
+      ` If all tolerances are increased to ${part} of their values, the yield is at least ${required}.` +
       " Larger tolerances were not tried."
     );
   if (t.scale_bound < 0)
     return ` To obtain a yield of ${required}, reduce all tolerances to less than ${part} of their values.`;
   if (t.sigma_scale < 1) return ` To obtain a yield of ${required}, reduce all tolerances to ${part} of their values.`;
-  return ` The yield is at least ${required} if all tolerances are increased to ${part} of their values.`;
+  return ` If all tolerances are increased to ${part} of their values, the yield is at least ${required}.`;
 }
 
 function toleranceText(t) {
@@ -119,7 +119,7 @@ function writeTolerance() {
     el("div", { class: "charts" }, toleranceChart(t)),
     kinds.length ? el("h3", { class: "after" }, "Cables with the largest part of the error") : null,
     kinds.length
-      ? el("p", {}, `To first order, the errors contribute the following shares of ψ²: ${kinds.join(", ")}.`)
+      ? el("p", {}, `To first order, the errors contribute the following shares to ψ²: ${kinds.join(", ")}.`)
       : null,
     shareTable(t),
   );

@@ -10,8 +10,8 @@ import hifdm
 
 
 class Evolution:
-    """The best quarter of each generation is used as parents of the next generation. The spread of a generation follows
-    the spread of its parents."""
+    """Uses the best quarter of each generation as parents of the next generation. The standard deviation of a
+    generation adapts to the standard deviation of its parents."""
 
     def __init__(self, initial, lower, upper, n=64, seed=1):
         self.random = np.random.default_rng(seed)

@@ -1,7 +1,7 @@
-"""This package computes the shape and the pretension of cable nets for mesh reflectors.
+"""The package hifdm computes the shape and the pretension of cable nets for mesh reflectors.
 
-All arrays are numpy arrays. All values are in SI units. The last part of each name is the unit of its value. If a call
-fails, the package raises HifdmError, which contains the error message and the status. Example:
+All arrays are numpy arrays. All values are in SI units. The suffix of each name is the unit of the value, as in psi_m.
+If a call fails, the package raises HifdmError with the error message and the status. Example:
 
     import hifdm, numpy as np
     case = hifdm.open("configs/chen2022.yaml")

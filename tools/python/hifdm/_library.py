@@ -45,7 +45,7 @@ PROTOTYPES = {
 
 
 class HifdmError(Exception):
-    """An error of the library. The text of the exception is the error message.
+    """An error of the library. The string value of the exception is the error message.
 
     `status`: the reason as a word, such as "bad_case", "not_converged" or "no_memory".
     """
@@ -59,8 +59,9 @@ class HifdmError(Exception):
 
 
 def _candidates() -> list[str]:
-    """Returns the possible paths of the library. The environment variable HIFDM_LIBRARY overrides these paths. For the
-    last path, which has no folder, the dynamic loader searches for the library."""
+    """Returns the candidate paths of the shared library. If the environment variable HIFDM_LIBRARY is set, its value is
+    the only candidate path. The dynamic loader searches for the last candidate, because it is a file name without a
+    folder."""
     given = os.environ.get("HIFDM_LIBRARY")
     if given:
         return [given]
@@ -74,12 +75,12 @@ def _candidates() -> list[str]:
 
 @contextlib.contextmanager
 def _quiet_waiting() -> Iterator[None]:
-    """Lets waiting threads of OpenMP sleep, unless the user has set a wait policy. The program `hifdm` does the
-    same.
+    """Lets waiting OpenMP threads sleep unless the user has set a wait policy. The program `hifdm` also lets its
+    waiting threads sleep.
 
-    OpenMP reads the environment variables when it is loaded. By default, waiting threads of OpenMP spin for a
-    millisecond. With this default, evaluating small batches takes three times as much processor time as with sleeping
-    threads.
+    OpenMP reads its environment variables when the OpenMP library is loaded. By default, waiting OpenMP threads spin
+    for one millisecond. Evaluating small batches with spinning threads takes three times as much processor time as with
+    sleeping threads.
     """
     ours = {} if {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT"} & os.environ.keys() else _WAITING
     os.environ.update(ours)
@@ -98,8 +99,8 @@ def _reader(library: str) -> ctypes.Array | None:
     """Returns the command that reads an existing output file in a new process. Returns None if no Python interpreter
     is available.
 
-    By default, a run reads an existing output file in a fork of this process. However, HDF5 conversions of h5py wait
-    for the GIL. If another thread holds the GIL during the fork, these conversions wait forever in the new process.
+    By default, a run reads an existing output file in a forked process. The HDF5 conversions of h5py wait for the GIL.
+    If another thread holds the GIL during the fork, the HDF5 conversions in the forked process wait forever.
     """
     if not sys.executable or getattr(sys, "frozen", False):
         return None
@@ -147,13 +148,14 @@ def status_word(status: int) -> str:
 
 
 def word(of: str, code: int) -> str:
-    """Returns the word that belongs to a code. The argument `of` is the name of the list of words."""
+    """Returns the name of an integer code, such as "inner". The argument `of` selects the enumeration, such as
+    "role"."""
     found = status_word(code) if of == "status" else lib.hf_flat_word(of.encode(), code)
     return "unknown" if found is None else found if isinstance(found, str) else found.decode()
 
 
 def c_text(text: bytes) -> bytes:
-    """Returns the text unchanged. Raises ValueError if the text contains a NUL character."""
+    """Returns the string unchanged. Raises ValueError if the string contains a NUL character."""
     if b"\0" in text:
         raise ValueError(f"{text.decode(errors='replace')!r} has a NUL character")
     return text
@@ -167,16 +169,16 @@ _pointer_of = {np.dtype(np.float64): _reals, np.dtype(np.int32): _ints, np.dtype
 
 
 def pointer(array: np.ndarray | None):
-    """Returns a pointer to the data of an array. The caller must keep the array alive while the pointer is used."""
+    """Returns a pointer to the data of an array. The caller must keep the array alive while the pointer is in use."""
     return None if array is None else array.ctypes.data_as(_pointer_of[array.dtype])
 
 
 def wanted(name: str, array, dtype, shape: tuple) -> np.ndarray:
-    """Returns the array itself if it has the given dtype and shape, in C order. A length of None in `shape` allows any
-    length.
+    """Returns the array itself if it has the given dtype and shape in C order. If a length in the argument `shape` is
+    None, the array can have any length along the axis.
 
-    Otherwise, raises TypeError or ValueError. The error message gives the name of the argument, its type or shape, and
-    the required type and shape.
+    Otherwise, raises TypeError or ValueError. The error message contains the name, the actual type or shape, and the
+    required type and shape of the argument.
     """
     want = "(" + ", ".join("n" if n is None else str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
     want = f"a numpy array of dtype {np.dtype(dtype)} and shape {want} in C order"

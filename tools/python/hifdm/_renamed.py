@@ -1,5 +1,5 @@
-"""Translates the names of version 0.2 into new names. Version 0.3 accepts the old names with a DeprecationWarning.
-Version 0.4 will reject the old names."""
+"""Translates the names of version 0.2 into new names. Version 0.3 accepts the names of version 0.2 with a
+DeprecationWarning. Version 0.4 will reject the names of version 0.2."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KEYS = {  # of figures in a Shape, a Run or a result file
 
 
 def new_key(key: str) -> str | None:
-    """Returns the new name of a figure, a stage or an objective, or None if the name has not changed."""
+    """Returns the new name of a quantity, a stage or an objective, or None if the name has not changed."""
     if key.startswith("goal_"):
         return "objective_" + key[len("goal_"):].replace("_displacement", "_deflection")
     return KEYS.get(key)
@@ -42,7 +42,7 @@ def new_stage(stage: str) -> str:
 
 
 def user_level() -> int:
-    """Returns the stacklevel that makes a warning refer to the line of the user's program that calls this package."""
+    """Returns the `stacklevel` for a warning that refers to the calling line of the user's program."""
     level = 2
     while level < 12 and sys._getframe(level).f_globals.get("__name__", "").startswith(("hifdm.", "collections.abc")):
         level += 1
@@ -55,8 +55,8 @@ def warn(old: str, new: str) -> None:
 
 
 def old_attribute(owner: Any, name: str) -> Any:
-    """Returns the attribute that had the given name in version 0.2. Raises AttributeError if there was no attribute
-    with this name."""
+    """Returns the attribute that had the given name in version 0.2. Raises AttributeError if version 0.2 had no
+    attribute with the given name."""
     kind = type(owner).__name__
     new = ATTRIBUTES[kind].get(name)
     if new is None:
@@ -66,7 +66,7 @@ def old_attribute(owner: Any, name: str) -> Any:
 
 
 class Figures(dict):
-    """Figures by name. Requesting a figure by its version 0.2 name issues a DeprecationWarning."""
+    """Quantities by name. If a program uses a name of version 0.2, the access issues a DeprecationWarning."""
 
     def __missing__(self, key: str) -> Any:
         new = new_key(key) if isinstance(key, str) else None
@@ -77,8 +77,8 @@ class Figures(dict):
 
 
 class Stage(str):
-    """The name of a stage or a phase of a run. A comparison with the old name of this stage is also true, but causes a
-    DeprecationWarning."""
+    """Represents the name of a stage or a phase of a run. A comparison with the old name of the stage also returns
+    True, but issues a DeprecationWarning."""
 
     def __eq__(self, other: Any) -> bool:
         is_equal = str.__eq__(self, other)

@@ -1,4 +1,4 @@
-"""Classes for cases, shapes, designs and runs. A case can evaluate designs and execute complete runs."""
+"""Defines the classes for cases, shapes, designs and runs. A case can evaluate designs and execute complete runs."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ class Progress(NamedTuple):
 
 
 class Shape:
-    """A shape. Each figure of the shape is an attribute, such as psi_m, residual_N or status. The attribute `figures`
-    contains all figures."""
+    """A shape. Each quantity of the shape is an attribute, such as psi_m, residual_N or status. The attribute `figures`
+    is a dict of all quantities."""
 
     position_m: np.ndarray  # [n_node, 3] m, supports included
     length_m: np.ndarray  # [n_cable] m
@@ -62,8 +62,8 @@ class Shape:
 
 
 class Designs:
-    """The results of n designs. Each figure, such as psi_m or merit, is a column with one value for each design. A
-    column can be read as an attribute or as an item."""
+    """The results of n designs. Each quantity, such as psi_m or merit, is a column with one value for each design. Each
+    column can be accessed as an attribute or as an item."""
 
     def __init__(self, names: list[str], n_objective: int, table: np.ndarray):
         self.names = names
@@ -71,7 +71,7 @@ class Designs:
         self.table = table  # [n_figure, n]; the status is a code
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Returns a column [n]. If a design does not have the figure of this column, the value is NaN."""
+        """Returns a column [n]. For designs without this quantity, the column contains NaN."""
         new = new_key(name)
         if name not in self.names and new in self.names:
             warn(repr(name), repr(new))
@@ -101,18 +101,18 @@ class Designs:
 
     @property
     def best(self) -> int:
-        """The index of the feasible design with the minimum merit, or -1 if no design is feasible. If the case has
-        optimize.front, the designs have no merit."""
+        """Returns the index of the feasible design with the minimum merit, or -1 if no design is feasible. If the case
+        contains the key `optimize.front`, the designs have no merit."""
         merit = np.where(self.feasible, self["merit"], np.inf)
         return int(merit.argmin()) if self.feasible.any() else -1
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Returns a dict of all columns, which can be converted to a pandas.DataFrame."""
+        """Returns all columns as a dict that pandas.DataFrame accepts."""
         return {name: self[name] for name in self.names}
 
 
 class Run(Mapping[str, Any]):
-    """A finished run. A Run is a mapping that contains the figures of `hifdm run --json`."""
+    """A finished run. A Run is a mapping with the same contents as the output of `hifdm run --json`."""
 
     def __init__(self, figures: dict[str, Any]):
         self.figures = Figures(figures)
@@ -120,8 +120,7 @@ class Run(Mapping[str, Any]):
         self.file: str | None = figures.get("file")  # the result file, if the run has written one
 
     def __getitem__(self, stage: str) -> Any:
-        """Returns the figures of a stage, such as "form" or "search". Also returns the figures of another part of the
-        summary, such as "load_cases"."""
+        """Returns the results of a stage, such as "form", or of another part of the summary, such as "load_cases"."""
         try:
             return self.figures[stage]
         except KeyError:
@@ -166,7 +165,7 @@ def _plain(value: Any) -> Any:
 
 class _Lock:
     """Allows only one thread at a time to use a case. A run holds the lock of its case while it calls the function
-    `progress`. Therefore, the function `progress` must not use the case."""
+    `progress`. The function `progress` must not use the case of the run."""
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
@@ -183,8 +182,8 @@ class _Lock:
 
 
 class Case:
-    """A case, as returned by hifdm.open or hifdm.net. Only one thread at a time can use a case, and other threads wait.
-    Indices start at 0."""
+    """Represents a case. The functions hifdm.open and hifdm.net return cases. Only one thread at a time can use a case.
+    Other threads wait. Indices start at 0."""
 
     def __init__(self, open_handle: Callable[[int], int], keep: Any = ()):
         self._lock = _Lock()
@@ -237,7 +236,8 @@ class Case:
         _process.update(pid=os.getpid())
 
     def _call(self, function: Callable, *arguments: Any) -> int:
-        """Calls the library and issues its warnings as Python warnings. Raises HifdmError if the call fails."""
+        """Calls the library and issues the warnings of the library as Python warnings. Raises HifdmError if the call
+        fails."""
         self._check_process()
         _process["is_used"] = True
         status = function(*arguments)
@@ -280,9 +280,9 @@ class Case:
         return Shape(figures, objectives, {"position_m": self._numbers("position_m", 3), **arrays})
 
     def form(self) -> Shape:
-        """Finds the shape of the case.
+        """Finds the equilibrium shape of the net.
 
-        Raises HifdmError if the net has no shape, or if the iteration does not converge.
+        Raises HifdmError if the net has no equilibrium shape, or if the iteration does not converge.
         """
         with self._lock:
             if self._shape is None:
@@ -291,8 +291,8 @@ class Case:
             return self._shape
 
     def shape(self, design: np.ndarray) -> Shape:
-        """Returns the shape of one design [n_variable]. If the design is infeasible, no exception is raised, but the
-        attribute `status` of the shape gives the reason."""
+        """Returns the shape of one design [n_variable]. For an infeasible design, the method raises no exception. The
+        attribute `status` of the shape gives the reason why a design is infeasible."""
         design = wanted("design", design, float, (self.n_variable,))
         with self._lock:
             self.form()
@@ -311,24 +311,26 @@ class Case:
 
     @property
     def lower(self) -> np.ndarray:
-        """[n_variable] Lower bounds of the design variables. If a variable has no lower bound, the value is -inf."""
+        """[n_variable] Lower bounds of the design variables. If a design variable has no lower bound, its entry is
+        -inf."""
         return self._after_form("lower")
 
     @property
     def upper(self) -> np.ndarray:
-        """[n_variable] Upper bounds of the design variables. If a variable has no upper bound, the value is inf."""
+        """[n_variable] Upper bounds of the design variables. If a design variable has no upper bound, its entry is
+        inf."""
         return self._after_form("upper")
 
     @property
     def solver(self) -> str:
-        """The name of the solver that `evaluate` uses for the designs of this case."""
+        """Returns the name of the solver that the method `evaluate` uses for designs."""
         with self._lock:
             self.form()
             return self._texts("solver")[0]
 
     def evaluate(self, designs: np.ndarray) -> Designs:
-        """Evaluates designs [n, n_variable] on all cores. `variable_units` lists the units of the design variables. The
-        results are bit-identical to those of the command `hifdm evaluate`."""
+        """Evaluates designs [n, n_variable] on all processor cores. `variable_units` lists the units of the design
+        variables. The results are bit-identical to the output of the command `hifdm evaluate`."""
         designs = wanted("designs", designs, float, (None, self.n_variable))
         table = np.empty((len(self.figure_names), len(designs)))
         with self._lock:
@@ -337,12 +339,12 @@ class Case:
         return Designs(self.figure_names, len(self._objectives), table)
 
     def jacobian(self, designs: np.ndarray) -> np.ndarray:
-        """Returns exact derivatives [n, n_slope, n_variable] of figures at the designs [n, n_variable]. The derivatives
-        of infeasible designs are NaN.
+        """Returns exact derivatives of the results at the designs [n, n_variable] as an array [n, n_slope, n_variable].
+        The derivatives of infeasible designs are NaN.
 
-        `slope_names` lists the figures that are differentiated. If the case has objectives, these figures are the
-        objectives and the merit. Otherwise, only psi_m is differentiated. The unit of a derivative is the unit of the
-        figure divided by the unit of the design variable.
+        `slope_names` lists the differentiated quantities. If the case has objectives, the method differentiates the
+        objectives and the merit. Otherwise, the method differentiates only psi_m. The unit of a derivative is the unit
+        of the differentiated quantity divided by the unit of the design variable.
         """
         designs = wanted("designs", designs, float, (None, self.n_variable))
         slopes = np.empty((len(designs), len(self.slope_names), self.n_variable))
@@ -357,14 +359,14 @@ class Case:
             progress: Callable[[Progress], Any] | None = None) -> Run:
         """Executes all stages of the case, as the command `hifdm run` does.
 
-        `output`: path of the result file, or None to write no file. If the result file contains an interrupted run,
-        this run is resumed.
+        `output`: path of the result file, or None to write no file. If the result file contains an interrupted run, the
+        method resumes this run.
 
         `restart`: if True, an interrupted run is not resumed, but replaced by a new run.
 
         `progress`: a function that is called in a separate thread during the run. If `progress` returns False, the run
         stops with the status "interrupted". If `progress` raises an exception, the run stops and raises the same
-        exception. Ctrl-C also stops the run. The function `progress` must not use this case.
+        exception. Ctrl-C also stops the run. The function `progress` must not use the case of the run.
         """
         path = None if output is None else c_text(os.fsencode(output))
         raised: list[BaseException] = []
@@ -417,7 +419,8 @@ def open(path: str | os.PathLike, set: Overrides = (), *, threads: int = 0) -> C
 
 
 def _codes(name: str, words: str | Sequence[str] | np.ndarray, of: str, n: int) -> np.ndarray:
-    """Returns an array of n codes. The argument `words` may be one word, n words, or an array of n codes (uint8)."""
+    """Returns an array of n integer codes. The argument `words` can be one string, n strings, or an array of n codes
+    (uint8)."""
     if isinstance(words, np.ndarray) and words.dtype.kind != "U":
         return wanted(name, words, np.uint8, (n,))
     each = [words] * n if isinstance(words, str) else list(words)
@@ -450,7 +453,7 @@ def _members(name: str, cables: Sequence[int]) -> np.ndarray:
 
 
 def _sets(sets: Mapping[str, Sequence[int]]) -> tuple:
-    """Returns the sorted names of the sets, the index at which each set begins, and the cable indices of all sets."""
+    """Returns the sorted names of the sets, the start index of each set, and the cable indices of all sets."""
     names = sorted(sets, key=lambda name: name.encode())
     members = [_members(name, sets[name]) for name in names]
     start = np.cumsum([0] + [len(member) for member in members], dtype=np.int32)
@@ -463,24 +466,25 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
         node_ids: Sequence[str] | None = None, cable_ids: Sequence[str] | None = None,
         sets: Mapping[str, Sequence[int]] | None = None, set: Overrides = (), threads: int = 0,
         **sections: Any) -> Case:
-    """Creates a case from arrays. The arrays are not copied, so do not change the arrays while the case exists.
+    """Creates a case from arrays. The case uses the arrays without copying them. Do not change the arrays while the
+    case exists.
 
     `position_m`: target positions of free nodes and real positions of supports [n_node, 3], m.
 
     `end`: indices of the two end nodes of each cable [n_cable, 2], int32.
 
     `role`: role of each node, which is "support", "inner" or "edge". Only the nodes with the role "inner" contribute to
-    psi. The arguments `role`, `group` and `law` accept a single word that applies to all items, a sequence of
-    words, or an array of codes (uint8).
+    psi. The arguments `role`, `group` and `law` accept one string for all items, a sequence of strings, or an array of
+    codes (uint8).
 
-    `group`: group of each cable, which is "inner" or "boundary". Without optimize.variables, the pretensions of the
-    cables in the group "boundary" are the design variables.
+    `group`: group of each cable, which is "inner" or "boundary". Without the key `optimize.variables`, the pretensions
+    of the cables in the group "boundary" are the design variables.
 
     `law`: law of each cable, which is "tension", "length", "force_density" or "elastic".
 
     `value`: target value of the law of each cable [n_cable], in N (tension), m (length), N/m (force density) or m
-    (unstressed length). If the target value is NaN, a default is used. For a tension, the default is the
-    pretension of the case. For a length, it is the distance between the target positions of the end nodes.
+    (unstressed length). If the target value is NaN, hifdm uses a default value. For a tension, the default is the
+    pretension of the case. For a length, the default is the distance between the target positions of the end nodes.
 
     `EA_N`: axial stiffness of each cable [n_cable], N.
 

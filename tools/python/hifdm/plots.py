@@ -1,4 +1,4 @@
-"""Functions that plot results with matplotlib. The package matplotlib is imported only when a plot is made."""
+"""Plots results with matplotlib. The functions import matplotlib only when they make a plot."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def plot_net(position_m: np.ndarray, end: np.ndarray, tension_N: np.ndarray | None = None, ax=None):
-    """Plots the cables of a net. The colour of a cable shows its tension. Returns the axes.
+    """Plots the cables of a net. The colour of each cable shows its tension. Returns the axes.
 
     `position_m`: [n_node, 3] m, `end`: [n_cable, 2], `tension_N`: [n_cable] N
     """

@@ -1,8 +1,8 @@
 """Reads result files with h5py. The attribute `h5` of a Result is the open file. The header include/hifdm/store.h
 describes the contents of a result file.
 
-Result files of version 0.2 use old names (_renamed.py). The class Result also reads files of version 0.2, and returns
-their figures under the new names."""
+The module _renamed.py translates the names in result files of version 0.2. The class Result also reads files of version
+0.2 and returns their results under the new names."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ _OF_POPULATION = ("n_individual", "n_variable", "n_objective", "generations_limi
 
 
 class Result:
-    """An open result file. HDF5 is not thread-safe. Therefore, do not open a result file while a run in the same
-    process writes to this file."""
+    """An open result file. HDF5 is not thread-safe. Do not open a result file while a run in the same process writes to
+    this file."""
 
     def __init__(self, path: str | os.PathLike):
         import h5py  # imported here, because the rest of the package does not need it
@@ -49,7 +49,8 @@ class Result:
 
     @property
     def stages(self) -> list[str]:
-        """The names of the stages that have a shape, such as "form", "search", "refine" or "load_cases/cold"."""
+        """Returns the names of the stages that have a shape, such as "form", "search", "refine" or
+        "load_cases/cold"."""
         load_cases = self.h5.get("load_cases", self.h5.get("cases", {}))
         names = [*_GROUPS, *(f"load_cases/{name}" for name in load_cases if name != "name")]
         return [Stage(name) for name in names if self._group(name)]
@@ -89,7 +90,7 @@ class Result:
 
     @property
     def psi_m(self) -> np.ndarray:
-        """[generation, individual] psi in the search, m. The value is NaN for infeasible individuals."""
+        """[generation, individual] psi in the search, m. For infeasible individuals, psi is NaN."""
         return self._series("psi_m")
 
     @property
