@@ -21,7 +21,8 @@ const inMm = (v, digits = 4) => `${Math.abs(1e3 * v) < RESOLVED_MM ? rounded(0, 
 function adjustText(name) {
   const expected = (value, sigma) => `expected: ${inMm(value)} ± ${fmt(1e3 * sigma, 2)}`;
   return [
-    `The measurement covers ${fmtCount(adjust.measured_nodes)} nodes. χ² per coordinate is ${fmt(adjust.chi_square, 3)}. ` +
+    `The measurement covers ${fmtCount(adjust.measured_nodes)} nodes. ` +
+      `χ² per coordinate is ${fmt(adjust.chi_square, 3)}. ` +
       "χ² is about 1 if the case file states the tolerances and measurement errors correctly.",
     `The most probable net has a ${name} of ${inMm(adjust.estimated_m)}` +
       ` (${expected(adjust.estimated_expected_m, adjust.estimated_sigma_m)}).` +
@@ -34,11 +35,11 @@ function adjustText(name) {
           `${inMm(adjust.design_psi_m)}.`
         : "ψ is measured from the target positions.",
     adjust.end === "target" && adjust.adjusted_expected_m > adjust.target_m
-      ? "The error of the most probable net meets the target. The expected error is larger than the target."
+      ? "The surface error of the most probable net meets the target. The expected surface error exceeds the target."
       : ADJUST_END[adjust.end] || "",
     adjust.maybe_slack
       ? `${fmtCount(adjust.maybe_slack)} cables may be slack. The measured positions do not show how slack these ` +
-        "cables are. Because of slack cables, the uncertainty after adjustment is larger than the ± value."
+        "cables are. Because of slack cables, the uncertainty after adjustment is larger than the stated ± value."
       : "",
     adjust.held_taut
       ? "The turnbuckle adjustments maintain the minimum tension in each cable. No additional cable becomes slack."

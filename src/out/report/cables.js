@@ -62,8 +62,8 @@ function cableColumns(before, after, families, choose) {
 }
 
 const CABLES_SAID =
-  "Click a column heading to sort the table. Click a cable name to show the cable in the picture. Click a cable in the " +
-  "picture to move its row to the top.";
+  "Click a column heading to sort the table. Click a cable name to show the cable in the picture. Click a cable in " +
+  "the picture to move its row to the top.";
 
 // Returns the id of a cable as a button that shows the cable in the picture.
 function cableLink(e, choose) {
@@ -98,7 +98,9 @@ function writeCables(view) {
       : null,
     adjust ? "A positive length error means that the cable is too long." : null,
     net.psi_by_cut ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack." : null,
-    net.cable_share ? "The share of the error is a first-order estimate of the contribution of each cable to ψ²." : null,
+    net.cable_share
+      ? "The share of the error is a first-order estimate of the contribution of each cable to ψ²."
+      : null,
   ].filter((text) => text);
   const all = sortableTable({
     caption: "Cables",

@@ -35,8 +35,8 @@ function caseDifferences() {
       ? el(
           "p",
           {},
-          `The comparison covers only the first ${LINES_OF_CASE_MAX} lines of each case file. ` +
-            `The comparison ignores the remaining lines (at most ${fmtCount(left)}).`,
+          `The comparison covers only the first ${LINES_OF_CASE_MAX} lines of each case file and ignores up to ` +
+            `${fmtCount(left)} lines.`,
         )
       : null;
   if (!lines.length) return [left > 0 ? cut : el("p", {}, "The two case files are identical.")];
@@ -86,7 +86,7 @@ function writeOther() {
       otherShape
         ? "The two results have the same net. The pictures can also show the shape of the other result. The table " +
             "of cables lists the tensions of both results."
-        : "Because the two results have different nets, this page compares only the values in the table.",
+        : "Because the two results have different nets, this page compares only their numerical results.",
     ),
     table(
       [

@@ -108,11 +108,13 @@ function writeWhose(more) {
       "p",
       { class: "whose", id: "whose" },
       isFormFinding
-        ? "This page shows the shape after form-finding. This shape is not a point of the Pareto front."
-        : `This page shows the point of the Pareto front with the minimum ${objectiveName(Object.keys(front.initial)[0])}.` +
-            `${asBuilt ? " As-built nets are those of the form-finding, which is no point of the front." : ""}`,
+        ? "This page shows the shape after form-finding. The shape after form-finding is not a point of the Pareto " +
+            "front."
+        : "This page shows the point of the Pareto front with the minimum " +
+            `${objectiveName(Object.keys(front.initial)[0])}.` +
+            `${asBuilt ? " The as-built nets are computed for the shape after form-finding." : ""}`,
       more.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
-      " To get such a page for a point, make a result of it: ",
+      " To get a page for one point, run this command: ",
       el("code", {}, pointCommand(front)),
     ),
   );
@@ -159,8 +161,8 @@ function writeFront() {
     el(
       "p",
       {},
-      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}. No design found is better ` +
-        `in all objectives than a design on the front. ` +
+      `${fmtCount(front.n_point)} designs${left.length ? `, ${left.join(", ")}` : ""}. No known design is better ` +
+        `than a design on the front in all objectives. ` +
         `The computation took ${fmtDuration(front.wall_s)}. The knee is the ` +
         `point farthest below the ${names.length > 2 ? "plane through" : "straight line between"} the ends.`,
     ),

@@ -326,8 +326,9 @@ function writeMap() {
       el(
         "figcaption",
         { id: "map-caption" },
-        "The map shows the net at its target positions, viewed along z. The map interpolates values between the nodes. " +
-          "The height is positive above the target surface. The distance includes tangential displacements, as ψ does." +
+        "The map shows the net at its target positions, viewed along z. " +
+          "The map interpolates values between the nodes. The height is positive above the target surface. " +
+          "The distance from the target position includes tangential displacements, as ψ does." +
           (net.facets
             ? " The colour of a facet shows its mean error along the surface normal. The error is positive above the " +
               "target surface, or above the best fit to all facets."

@@ -180,7 +180,7 @@ function writeCoupling() {
         "Change of the elastic deformation",
         "step_m",
         "change (mm)",
-        "The plot shows the maximum displacement of the attachments in each iteration.",
+        "The plot shows the maximum displacement of the net attachments in each iteration.",
       ),
       one(
         "Maximum deflection",

@@ -372,7 +372,10 @@ function writeCurves(study, axes, figures, mainStage) {
         return `${lead.title} still decreases at the end of the axis (${end}). Add points ${a.extend} this value.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
-    ...psi.map(({ objective }) => `The page does not list the objective ${objective} separately, because this objective equals ψ.`),
+    ...psi.map(
+      ({ objective }) =>
+        `The page does not list the objective ${objective} separately, because this objective equals ψ.`,
+    ),
     ...fixed.map((a) => `All completed points have ${headOf(a, a.only)}.`),
   ];
   const shares = lead

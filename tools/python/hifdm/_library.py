@@ -1,5 +1,5 @@
 """Loads the shared library and its flat interface (include/hifdm/flat.h) with ctypes. During each call, ctypes releases
-the GIL."""
+Python's global interpreter lock (GIL)."""
 
 from __future__ import annotations
 
@@ -174,8 +174,8 @@ def pointer(array: np.ndarray | None):
 
 
 def wanted(name: str, array, dtype, shape: tuple) -> np.ndarray:
-    """Returns the array itself if it has the given dtype and shape in C order. If a length in the argument `shape` is
-    None, the array can have any length along the axis.
+    """Returns the array itself if it has the given dtype and shape in C order. If an element of the argument `shape` is
+    None, the array can have any length along this axis.
 
     Otherwise, raises TypeError or ValueError. The error message contains the name, the actual type or shape, and the
     required type and shape of the argument.

@@ -66,7 +66,7 @@ def old_attribute(owner: Any, name: str) -> Any:
 
 
 class Figures(dict):
-    """Quantities by name. If a program uses a name of version 0.2, the access issues a DeprecationWarning."""
+    """Quantities by name. If a program uses a name of version 0.2, Python issues a DeprecationWarning."""
 
     def __missing__(self, key: str) -> Any:
         new = new_key(key) if isinstance(key, str) else None

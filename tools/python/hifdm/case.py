@@ -71,7 +71,7 @@ class Designs:
         self.table = table  # [n_figure, n]; the status is a code
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Returns a column [n]. For designs without this quantity, the column contains NaN."""
+        """Returns a column [n]. For designs without the requested quantity, the column contains NaN."""
         new = new_key(name)
         if name not in self.names and new in self.names:
             warn(repr(name), repr(new))
@@ -182,7 +182,7 @@ class _Lock:
 
 
 class Case:
-    """Represents a case. The functions hifdm.open and hifdm.net return cases. Only one thread at a time can use a case.
+    """Represents a case. The functions hifdm.open and hifdm.net create cases. Only one thread at a time can use a case.
     Other threads wait. Indices start at 0."""
 
     def __init__(self, open_handle: Callable[[int], int], keep: Any = ()):
@@ -339,12 +339,12 @@ class Case:
         return Designs(self.figure_names, len(self._objectives), table)
 
     def jacobian(self, designs: np.ndarray) -> np.ndarray:
-        """Returns exact derivatives of the results at the designs [n, n_variable] as an array [n, n_slope, n_variable].
-        The derivatives of infeasible designs are NaN.
+        """Returns exact derivatives for all designs [n, n_variable] as an array [n, n_slope, n_variable]. The
+        derivatives of infeasible designs are NaN.
 
         `slope_names` lists the differentiated quantities. If the case has objectives, the method differentiates the
-        objectives and the merit. Otherwise, the method differentiates only psi_m. The unit of a derivative is the unit
-        of the differentiated quantity divided by the unit of the design variable.
+        objectives and the merit. If the case has no objectives, the method differentiates only psi_m. The unit of a
+        derivative is the unit of the differentiated quantity divided by the unit of the design variable.
         """
         designs = wanted("designs", designs, float, (None, self.n_variable))
         slopes = np.empty((len(designs), len(self.slope_names), self.n_variable))
