@@ -110,7 +110,7 @@ function patternText(all) {
 
 const PATTERN_NOTE =
   "Sidelobe levels and cross-polarisation levels are relative to the maximum of the beam. " +
-  "A dash (–) means that the angle range of the cut is too small or the angle spacing too coarse to compute the value.";
+  "A dash (–) means that the angle range of the cut is too small or the angle spacing is too coarse.";
 
 function writePattern() {
   const all = patterns();

@@ -1,5 +1,5 @@
-"""Translates the names of version 0.2 into new names. Version 0.3 accepts the names of version 0.2 with a
-DeprecationWarning. Version 0.4 will reject the names of version 0.2."""
+"""Translates the names of version 0.2 into the names of version 0.3. Version 0.3 accepts the names of version 0.2 with
+a DeprecationWarning. Version 0.4 will reject the names of version 0.2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Plots results with matplotlib. The functions import matplotlib only when they make a plot."""
+"""Plots results with matplotlib. The plot functions import matplotlib only when they are called."""
 
 from __future__ import annotations
 

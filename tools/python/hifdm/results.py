@@ -1,8 +1,8 @@
-"""Reads result files with h5py. The attribute `h5` of a Result is the open file. The header include/hifdm/store.h
+"""Reads result files with h5py. The attribute `h5` of a Result is the open HDF5 file. The header include/hifdm/store.h
 describes the contents of a result file.
 
 The module _renamed.py translates the names in result files of version 0.2. The class Result also reads files of version
-0.2 and returns their results under the new names."""
+0.2 and returns their results with the names of version 0.3."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Result:
         return Shape(self._figures(group), {}, arrays)
 
     def _figures(self, group) -> Figures:
-        """Returns the attributes of an HDF5 group under their new names. Codes are replaced by words."""
+        """Returns the attributes of an HDF5 group with the names of version 0.3. Codes are replaced by words."""
         is_search_of_0_2 = group.name == "/ga/best"
         figures = Figures()
         for name, value in (self.h5["ga"] if is_search_of_0_2 else group).attrs.items():
