@@ -277,8 +277,8 @@ START_TEST(words_of_the_summary_are_explained)
     HIFDM(0, "explain", "give way");
     OUT("deflection (term, m)\n    Formerly \"gives way\", \"give way\".\n");
     HIFDM(0, "explain", "at bounds");
-    OUT("no objective counts some nodes");
-    OUT("What to do: If a few variables are at bounds");
+    OUT("If no objective includes the positions of some nodes");
+    OUT("What to do: If only a few design variables are at bounds");
     HIFDM(2, "explain", "nonsenses");
 }
 END_TEST
@@ -286,8 +286,8 @@ END_TEST
 START_TEST(explain_helps_with_slips)
 {
     HIFDM(0, "explain", "straight_chain");
-    OUT("straight_chain (status; exit status 4)\n    A straight chain of cables that keep their lengths");
-    OUT("\n    What to do: Let the chain sag");
+    OUT("straight_chain (status; exit status 4)\n    A straight chain of cables with fixed lengths");
+    OUT("\n    What to do: Set a scallop");
     HIFDM(0, "explain", "warning: slack cables in the form-finding shape (1): c7");
     OUT("slack_cables (warning)\n");
     ck_assert_int_eq(count_of(said.out, "("), 1);
