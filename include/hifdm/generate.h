@@ -27,11 +27,15 @@ HF_API_BEGIN
 /* Each generator is one row X(name of the section, type of the settings, keys, help). `hifdm schema` lists the
  * generators in this order. */
 #define HF_GENERATORS(X)                                                                                               \
-    X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS, "A net over a parabolic cylinder.")                           \
+    X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS,                                                               \
+      "The section `parabolic_cylinder` generates a net over a parabolic cylinder.")                                   \
     X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS,                                                                   \
-      "A net over a paraboloid with a round aperture, with or without a rear net.")
-/* Help of the section scene. The help states the number of generators plus one for import. */
-#define HF_GENERATORS_HELP "The net. A case has exactly one of the three sections below."
+      "The section `paraboloid` generates a net over a paraboloid with a round aperture. The generator `paraboloid` "  \
+      "can also add a rear net.")
+/* Help of the section scene. The help lists all generators, and import. */
+#define HF_GENERATORS_HELP                                                                                             \
+    "The section `scene` defines the net. A case file contains exactly one of the sections `parabolic_cylinder`, "     \
+    "`paraboloid` and `import`."
 
 #define HF_GENERATE_FAULT_SIZE 256 /* size in bytes of the reason why a net cannot be made */
 
@@ -53,16 +57,21 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
  * hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
-      "Distance of the rim of a rear net below the rim of the front net. Ties join the free nodes of the two nets. "   \
-      "0: no rear net")                                                                                                \
+      "The key `rear_distance_m` sets the distance of the rim of the rear net below the rim of the front net. Ties "   \
+      "connect the free nodes of the front net to the free nodes of the rear net. If the distance is 0 m, hifdm "      \
+      "generates no rear net")                                                                                         \
     X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
-      "Focal length of the rear net, which is curved towards the front net. 0: the focal length of the front net")     \
+      "The key `rear_focal_length_m` sets the focal length of the rear net. The rear net is curved towards the front " \
+      "net. If the key `rear_focal_length_m` is 0, the rear net has the focal length of the front net")                \
     X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"),                                   \
-      "Direction of the ties: z, or the normal of the front net")                                                      \
+      "The key `tie_direction` selects the direction of the ties. The value `z` selects the z axis. The value "        \
+      "`normal` selects the normal of the front net")                                                                  \
     X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", ((const char *const[]){HF_LAW_LIST(HF_LAW_WORD) NULL}),     \
-      "Law of the ties. The nets have law tension, and their boundary cables law length")                              \
+      "The key `tie_law` selects the law of the ties between the front net and the rear net. The inner cables of "     \
+      "both nets have the law `tension`. The boundary cables of both nets have the law `length`")                      \
     X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
-      "Tension of the ties at the target positions, for the laws tension, force_density and elastic")
+      "The key `tie_tension_N` sets the tension of the ties at the target positions. The key `tie_tension_N` applies " \
+      "only to ties with the law `tension`, `force_density` or `elastic`")
 
 /* ---- parabolic_cylinder ---- */
 
@@ -100,36 +109,49 @@ typedef struct {
 /* Keys of the section, as rows X(section, member, type, minimum, maximum, default, unit, words, help) of hf_field_table
  * (config.h). */
 #define HF_CYLINDER_KEYS(X, section)                                                                                   \
-    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Aperture along the directrix (x)")   \
-    X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Length along the generatrix (y)")      \
-    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL, "Focal length of z = x^2/(4f)")   \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                       \
+      "The key `aperture_m` sets the aperture of the net along the directrix (x)")                                     \
+    X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                         \
+      "The key `length_m` sets the length of the net along the generatrix (y)")                                        \
+    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
+      "The key `focal_length_m` sets the focal length f of the parabolic cylinder z = x^2/(4f)")                       \
     X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                                    \
-      "Number of modules along the directrix and the generatrix")                                                      \
+      "The key `modules` sets the number of modules along the directrix and along the generatrix")                     \
     X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                           \
-      "Number of net cells per module, along the directrix and the generatrix")                                        \
+      "The key `cells_per_module` sets the number of net cells in each module, along the directrix and along the "     \
+      "generatrix")                                                                                                    \
     X(section, pitches_x_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "Projected widths of the modules along x, from the left. Their sum must be aperture_m. Within each module "      \
-      "the cells are equal, as spacing says. Without this key, all modules are equal")                                 \
+      "The key `pitches_x_m` lists the projected widths of the modules along x, from left to right. The sum of the "   \
+      "module widths must be equal to the value of `aperture_m`. The key `spacing` determines the spacing of the "     \
+      "nodes within each module. Without the key `pitches_x_m`, all modules are equal")                                \
     X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "Lengths of the modules along y. Their sum must be length_m. Without this key, all modules are equal")           \
+      "The key `pitches_y_m` lists the lengths of the modules along y. The sum of the module lengths must be equal "   \
+      "to the value of `length_m`. Without the key `pitches_y_m`, all modules are equal")                              \
     X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", HF_WORDS("quad", "triangle", "diagonal", "alternating"),      \
-      "quad has cables along x and y. triangle adds one diagonal per cell, all in the same direction. alternating "    \
-      "adds one diagonal per cell, in alternating directions. diagonal has four half diagonals per cell that meet "    \
-      "in a node at its middle, and the boundary cables along x and y. All patterns except quad omit cables "          \
-      "between two supports")                                                                                          \
+      "The key `pattern` selects the pattern of the cables. The pattern `quad` has cables along x and y. The pattern " \
+      "`triangle` adds one diagonal to each cell of the pattern `quad`, always in the same direction. The pattern "    \
+      "`alternating` adds one diagonal to each cell of the pattern `quad`, in alternating directions. The pattern "    \
+      "`diagonal` has four half diagonals in each cell. The half diagonals of a cell meet at a node in the middle of " \
+      "the cell. The pattern `diagonal` also has boundary cables along x and y. In all patterns except `quad`, hifdm " \
+      "omits cables between two supports")                                                                             \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
-      "Spacing of the nodes along the directrix: equal arc length, or equal projected (x) spacing")                    \
+      "The key `spacing` selects the spacing of the nodes along the directrix. The value `equal_arc` selects equal "   \
+      "arc lengths. The value `equal_projected` selects equal projected distances along x")                            \
     X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", HF_WORDS("outer_edge", "module_edges"),                \
-      "Which cables are boundary cables (law length). The other cables are inner cables (law tension)")                \
+      "The key `boundary` selects the boundary cables of the net. Boundary cables have the law `length`. All other "   \
+      "cables are inner cables with the law `tension`")                                                                \
     X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL,                                                        \
-      "Inward sag of a free outer edge between two supports, as a fraction of their distance. The edge is a "          \
-      "parabola")                                                                                                      \
+      "The key `scallop` sets the inward sag of a free outer edge between two supports. The sag is given as a "        \
+      "fraction of the distance between the two supports. The scalloped edge is a parabola")                           \
     X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", HF_WORDS("module_corners", "ribs", "perimeter"),   \
-      "Fixed nodes: all module corners, all nodes on ribs (y = module border), or the perimeter")                      \
+      "The key `supports` selects the fixed nodes. The value `module_corners` selects all corners of the modules. "    \
+      "The value `ribs` selects all nodes on module borders along x. The value `perimeter` selects all nodes on the "  \
+      "perimeter of the net")                                                                                          \
     X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
-      "Length of the edge ties, which are boundary cables with law length. They connect the nodes of the outer "       \
-      "edge to supports outside of the edge. The ties run along x or y, and along both at the corners of the net. "    \
-      "0: the nodes of the outer edge are supports themselves")                                                        \
+      "The key `edge_tie_m` sets the distance along x or y from the outer edge to the supports of the edge ties. "     \
+      "Edge ties connect nodes of the outer edge to supports outside the net. Edge ties are boundary cables with the " \
+      "law `length`. At a corner of the net, an edge tie extends by the same distance along x and along y. If the "    \
+      "key `edge_tie_m` is 0, the net has no edge ties and its supports are on the outer edge")                        \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the parabolic cylinder.
@@ -175,19 +197,23 @@ typedef struct {
 
 /* Keys of the section, in the form of HF_CYLINDER_KEYS. */
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
-    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Diameter of the aperture")           \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                       \
+      "The key `aperture_m` sets the diameter of the aperture")                                                        \
     X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
-      "Focal length of z = (x^2 + y^2)/(4f)")                                                                          \
+      "The key `focal_length_m` sets the focal length f of the paraboloid z = (x^2 + y^2)/(4f)")                       \
     X(section, offset_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                                      \
-      "Distance of the middle of the aperture from the axis, along x. 0: a centre-fed reflector")                      \
+      "The key `offset_m` sets the distance along x from the axis of the paraboloid to the centre of the aperture. "   \
+      "If the offset is 0 m, the reflector is centre-fed")                                                             \
     X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL,                                                           \
-      "Number of cells from the middle of the aperture to its rim")                                                    \
+      "The key `rings` sets the number of cells from the centre of the aperture to its rim")                           \
     X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", HF_WORDS("triangle", "quad"),                                \
-      "triangle has three families of cables, with rings of 6, 12, 18, ... nodes. The nodes of the last ring are "     \
-      "supports on the rim. quad has cables along x and y that end at supports on the rim")                            \
+      "The key `grid` selects the grid of the cables. The grid `triangle` has three families of cables. The rings of " \
+      "the grid `triangle` have 6, 12, 18 and so on nodes. The nodes of the last ring are supports on the rim. The "   \
+      "grid `quad` has cables along x and y. The cables of the grid `quad` end at supports on the rim")                \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \
-      "Spacing of the nodes along a radius of the aperture: equal projected spacing, or equal arc length on a "        \
-      "paraboloid around the middle of the aperture")                                                                  \
+      "The key `spacing` selects the spacing of the nodes along a radius of the aperture. The value "                  \
+      "`equal_projected` selects equal projected distances. The value `equal_arc` selects equal arc lengths on a "     \
+      "paraboloid around the centre of the aperture")                                                                  \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the paraboloid.

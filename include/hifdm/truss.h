@@ -144,51 +144,71 @@ typedef struct {
  * hf_field_table (config.h). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
     X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
-      "Distance of the rear chords from the front chords, along the normal of the surface")                            \
+      "The key `depth_m` sets the distance between the front chords and the rear chords, along the normal of the "     \
+      "surface")                                                                                                       \
     X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL,                                                       \
-      "Interval of the module borders along y with main units (mbug), counted from both edges. The other borders "     \
-      "have assistant units (abug)")                                                                                   \
-    X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL, "Young's modulus of the tubes")        \
+      "The key `main_every` sets the interval n of the main units. Every n-th module border along y, counted from "    \
+      "both edges, has main units (`mbug`). All other module borders along y have assistant units (`abug`)")           \
+    X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL,                                        \
+      "The key `E_Pa` sets Young's modulus of the tubes")                                                              \
     X(section, G_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,                                          \
-      "Shear modulus of the tubes; E/(2(1+nu)) for isotropic material")                                                \
-    X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL, "Density of the tubes")              \
-    X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL, "Thermal expansion of the tubes")            \
-    X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL, "Mass of the hinges at each node")             \
+      "The key `G_Pa` sets the shear modulus of the tubes. An isotropic material has the shear modulus E/(2(1+nu)), "  \
+      "with Young's modulus E and Poisson's ratio nu")                                                                 \
+    X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL,                                      \
+      "The key `density_kg_per_m3` sets the density of the tubes")                                                     \
+    X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL,                                              \
+      "The key `expansion_per_K` sets the coefficient of thermal expansion of the tubes")                              \
+    X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL,                                                \
+      "The key `hinge_mass_kg` sets the mass of the hinges at each node")                                              \
     X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", HF_WORDS("euler_bernoulli", "timoshenko"),          \
-      "Beam theory. euler_bernoulli has no shear deformation. timoshenko has a shear area of half the "                \
-      "cross-section (thin round tube)")                                                                               \
+      "The key `theory` selects the beam theory. The theory `euler_bernoulli` neglects shear deformation. The theory " \
+      "`timoshenko` uses half the cross-section area as the shear area, as for a thin round tube")                     \
     X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word,                                                \
-      "Joints of the members: rigid (clamped to their nodes), or pinned (axial force only)")                           \
+      "The key `joints` selects the joints of the members. Rigid joints clamp a member to its nodes. Pinned joints "   \
+      "transmit only axial force")                                                                                     \
     X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", HF_WORDS("central_module", "central_module_rear"), \
-      "Nodes that the spacecraft holds: all corners of the central module, or only its rear corners")                  \
+      "The key `supports` selects the nodes that the spacecraft holds. The value `central_module` selects all "        \
+      "corners of the central module. The value `central_module_rear` selects only the rear corners of the central "   \
+      "module")                                                                                                        \
     X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", HF_WORDS("all", "translations"),                          \
-      "Degrees of freedom held at these nodes: displacements and rotations, or only displacements")
+      "The key `support_dofs` selects the degrees of freedom that are fixed at the held nodes. The value `all` "       \
+      "selects displacements and rotations. The value `translations` selects only displacements")
 
 #define HF_TRUSS_UNIT_KEYS(X, section, diameter, panel_number)                                                         \
-    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "Outer diameter of the tubes")     \
-    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "Wall thickness of the tubes")           \
-    X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "Number of panels along one module")             \
-    X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word, "Diagonals of each panel")
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL,                                    \
+      "The key `diameter_m` sets the outer diameter of the tubes")                                                     \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL,                                          \
+      "The key `wall_m` sets the wall thickness of the tubes")                                                         \
+    X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL,                                                  \
+      "The key `panels` sets the number of panels along one module")                                                   \
+    X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                        \
+      "The key `diagonals` selects the diagonals of each panel")
 
 /* Keys of the section truss.ring and of each of its tubes. The macro argument is the default of the diameter. */
 #define HF_RING_KEYS(X, section)                                                                                       \
     X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
-      "Distance of the rear ring below the front ring, along z. Default: rear_distance_m of the net")                  \
+      "The key `height_m` sets the distance of the rear ring below the front ring, along z. The default distance is "  \
+      "the value of `rear_distance_m` of the net")                                                                     \
     X(section, cells_per_bay, HF_FIELD_INT, 1, 6000, "1", "", NULL,                                                    \
-      "Number of cells of the net along the rim in one bay of the ring. A bay has a vertical at each end, and its "    \
-      "longerons bend at the supports of the net between the verticals")                                               \
+      "The key `cells_per_bay` sets the number of net cells along the rim in one bay of the ring. Each bay has a "     \
+      "vertical at both ends. Between the verticals, the longerons change direction at the supports of the net")       \
     X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                          \
-      "Diagonals of each bay. Single diagonals alternate in direction")                                                \
+      "The key `bracing` selects the diagonals of each bay. Single diagonals alternate in direction from bay to bay")  \
     X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", HF_WORDS("bay", "vertical", "three_verticals"),                   \
-      "Joints that the spacecraft or the ground holds: the four joints of a bay, the two joints of a vertical, or "    \
-      "the rear joints of three verticals at 120 degrees")                                                             \
+      "The key `held` selects the joints that the spacecraft or the ground holds. The value `bay` selects the four "   \
+      "joints of a bay. The value `vertical` selects the two joints of a vertical. The value `three_verticals` "       \
+      "selects the rear joints of three verticals at intervals of 120 degrees")                                        \
     X(section, held_at_deg, HF_FIELD_DOUBLE, 0, 360, "180", "deg", NULL,                                               \
-      "Angle of the held bay or the (first) held vertical about the middle of the aperture, from x towards y. "        \
-      "hifdm uses the nearest bay or vertical. 180 is the side of the axis of an offset reflector")
+      "The key `held_at_deg` sets the angle of the held bay or vertical about the centre of the aperture, from x "     \
+      "towards y. If three verticals are held, the key `held_at_deg` sets the angle of the first vertical. hifdm "     \
+      "selects the bay or vertical nearest to the angle `held_at_deg`. For an offset reflector, the angle of 180 "     \
+      "degrees is on the side of the axis")
 
 #define HF_TUBE_KEYS(X, section, diameter)                                                                             \
-    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL, "Outer diameter of the tubes")     \
-    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "Wall thickness of the tubes")
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL,                                    \
+      "The key `diameter_m` sets the outer diameter of the tubes")                                                     \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL,                                          \
+      "The key `wall_m` sets the wall thickness of the tubes")
 
 /* Makes the truss of basic sub-rings over the modules of the net. The front nodes of the truss are the module corners
  * on the cylinder. At the outer edge of a net with edge ties, the front nodes of the truss are the supports of these

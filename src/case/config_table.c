@@ -14,48 +14,73 @@ const hf_section hf_section_table[] = {
 #define SECTION(section, type, KEYS, help) {"scene." #section, AT(has_##section), help},
     HF_GENERATORS(SECTION)
 #undef SECTION
-        {"scene.import", AT(has_import), "Any net from two CSV files."},
+        {"scene.import", AT(has_import), "The section `scene.import` reads a net from two CSV files."},
     {"surface", AT(has_surface),
-     "Target surface and figures of the reflecting surface. Without this section, hifdm computes no surface figures."},
+     "The section `surface` describes the target surface and requests the errors of the reflecting surface. Without "
+     "the section `surface`, hifdm computes no surface errors."},
     {"surface.pattern", AT(surface.has_pattern),
-     "Far field, computed by physical optics over the facets at surface.frequencies_Hz. Without this section, hifdm "
+     "The section `surface.pattern` requests the far field. hifdm computes the far field by physical optics over the "
+     "facets, at each frequency in the key `surface.frequencies_Hz`. Without the section `surface.pattern`, hifdm "
      "computes no far field."},
-    {"surface.pattern.feed", AT(surface.has_pattern), "The feed that illuminates the reflector."},
-    {"form", SIZE_MAX, "Form-finding. Without this section, the defaults apply."},
-    {"optimize", AT(has_optimize), "Optimisation. Without this section, hifdm only finds the shape."},
+    {"surface.pattern.feed", AT(surface.has_pattern),
+     "The section `surface.pattern.feed` describes the feed that illuminates the reflector."},
+    {"form", SIZE_MAX,
+     "The section `form` contains the settings of the form-finding. Without the section `form`, hifdm uses the default "
+     "settings."},
+    {"optimize", AT(has_optimize),
+     "The section `optimize` requests an optimisation and contains its settings. Without the section `optimize`, the "
+     "run ends after the form-finding and the computations on its shape."},
     {"tolerance", AT(has_tolerance),
-     "Errors of cut lengths, stiffness, supports and temperature for samples of the as-built net. Without this "
-     "section, hifdm computes no samples. All cables need EA."},
+     "The section `tolerance` contains the errors of cut lengths, stiffness, support positions and temperature. hifdm "
+     "draws random errors and computes samples of the as-built net. Without the section `tolerance`, hifdm computes no "
+     "samples. The section `tolerance` requires an axial stiffness EA for every cable."},
     {"truss", AT(has_truss),
-     "The deployable truss that carries the net. Without this section, the supports are rigid. The paper gives no "
-     "dimensions of the truss, so every default here is an assumption."},
-    {"truss.bud", AT(has_truss), "Basic unit on the directrix: planar trusses on the module borders along x."},
-    {"truss.mbug", AT(has_truss), "Main basic unit on the generatrix, along y."},
-    {"truss.abug", AT(has_truss), "Assistant basic unit on the generatrix: the lines along y between the main ones."},
+     "The section `truss` describes the deployable truss that carries the net. Without the section `truss`, the "
+     "supports of the net are rigid. The paper gives no dimensions of the truss, and therefore all default dimensions "
+     "in the section `truss` are assumptions."},
+    {"truss.bud", AT(has_truss),
+     "The section `truss.bud` describes the basic units along the directrix. Each basic unit along the directrix is a "
+     "planar truss on a module border along x."},
+    {"truss.mbug", AT(has_truss),
+     "The section `truss.mbug` describes the main basic units along the generatrix. Main units are on module borders "
+     "along y."},
+    {"truss.abug", AT(has_truss),
+     "The section `truss.abug` describes the assistant basic units along the generatrix. Assistant units are on the "
+     "module borders between the main units."},
     {"truss.ring", AT(has_truss_ring),
-     "A hoop truss under the rim of scene.paraboloid, in place of the generated units. Its material is that of the "
-     "section truss. Every default is an assumption."},
-    {"truss.ring.longeron", AT(has_truss_ring), "Members of the two rings."},
-    {"truss.ring.vertical", AT(has_truss_ring), "Members between the rings."},
-    {"truss.ring.diagonal", AT(has_truss_ring), "Members across the bays."},
-    {"truss.import", AT(has_truss_import), "Any truss from two CSV files, in place of the generated units."},
+     "The section `truss.ring` describes a hoop truss under the rim of the net from the section `scene.paraboloid`. "
+     "The hoop truss replaces the basic units. The section `truss` sets the material of the hoop truss. All default "
+     "values of the section `truss.ring` are assumptions."},
+    {"truss.ring.longeron", AT(has_truss_ring),
+     "The section `truss.ring.longeron` describes the members of the front ring and of the rear ring."},
+    {"truss.ring.vertical", AT(has_truss_ring),
+     "The section `truss.ring.vertical` describes the members that connect the front ring to the rear ring."},
+    {"truss.ring.diagonal", AT(has_truss_ring),
+     "The section `truss.ring.diagonal` describes the diagonal members of the bays."},
+    {"truss.import", AT(has_truss_import),
+     "The section `truss.import` reads a truss from two CSV files. The imported truss replaces the generated truss."},
     {"coupling", SIZE_MAX,
-     "Coupling of the net with its truss (Fig. 17 of the paper). Without a truss, this section is not used."},
+     "The section `coupling` contains the settings for the coupling of net and truss (Fig. 17 of the paper). If the "
+     "net has no truss, hifdm does not use the section `coupling`."},
     {"adjust", AT(has_adjust),
-     "Turnbuckles of the as-built net for `hifdm adjust`, which finds adjustments from measured positions."},
+     "The section `adjust` describes the turnbuckles of the as-built net. The command `hifdm adjust` computes "
+     "turnbuckle adjustments from measured node positions."},
     {"sweep", AT(has_sweep),
-     "Axes of a sweep for `hifdm sweep`, which runs the case once per point. An axis is key: [values] or key: {from, "
-     "to, n}."},
+     "The section `sweep` defines the axes of a sweep. The command `hifdm sweep` runs the case once for each point of "
+     "the sweep. Each axis has the form `key: [values]` or `key: {from, to, n}`."},
 };
 const int hf_n_section = sizeof hf_section_table / sizeof *hf_section_table;
 
 const hf_field hf_field_table[] = {
-    {"title", HF_FIELD_TEXT, AT(title), 0, sizeof((hf_case *)0)->title, "", "", NULL, "Title in one line"},
+    {"title", HF_FIELD_TEXT, AT(title), 0, sizeof((hf_case *)0)->title, "", "", NULL,
+     "The key `title` sets a title of one line"},
 
     {"scene.EA_inner_N", HF_FIELD_DOUBLE, AT(EA_N[0]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
-     "Axial stiffness EA of the inner cables to which the net gives none. Cut lengths require EA"},
+     "The key `EA_inner_N` sets the axial stiffness EA of inner cables for which the net defines no stiffness. To "
+     "compute cut lengths, hifdm needs the axial stiffness of every cable"},
     {"scene.EA_boundary_N", HF_FIELD_DOUBLE, AT(EA_N[1]), HF_ABOVE_ZERO, 1e15, "", "N", NULL,
-     "Axial stiffness EA of the boundary cables to which the net gives none. Cut lengths require EA"},
+     "The key `EA_boundary_N` sets the axial stiffness EA of boundary cables for which the net defines no stiffness. "
+     "To compute cut lengths, hifdm needs the axial stiffness of every cable"},
 
 #define FIELD(section, member, type, ...) {"scene." #section "." #member, type, AT(section.member), __VA_ARGS__},
 #define FIELDS(section, type, KEYS, help) KEYS(FIELD, section)
@@ -64,208 +89,266 @@ const hf_field hf_field_table[] = {
 #undef FIELD
 
         {"scene.import.nodes", HF_FIELD_TEXT, AT(nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-         "CSV file id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N] of the nodes. The path is relative to the case file"},
+         "The key `nodes` sets the path of the CSV file with the nodes of the net. The columns of the node file are "
+         "`id,x_m,y_m,z_m,role[,Fx_N,Fy_N,Fz_N]`. Columns in brackets are optional. A relative path starts from the "
+         "folder of the case file"},
     {"scene.import.cables", HF_FIELD_TEXT, AT(cables_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-     "CSV file id,i,j,group,law,value[,EA_N,set] of the cables. The path is relative to the case file"},
+     "The key `cables` sets the path of the CSV file with the cables of the net. The columns of the cable file are "
+     "`id,i,j,group,law,value[,EA_N,set]`. Columns in brackets are optional. A relative path starts from the folder of "
+     "the case file"},
 
     {"scene.import.facets", HF_FIELD_TEXT, AT(facets_path), 1, HF_PATH_SIZE, "", "", NULL,
-     "CSV file id,a,b,c[,d] with the nodes around each facet. A triangle has no d. The path is relative to the case "
-     "file. Default: hifdm finds the facets from the cables"},
+     "The key `facets` sets the path of the CSV file with the corner nodes of the facets. The columns of the facet "
+     "file are `id,a,b,c[,d]`. Columns in brackets are optional. If a facet is a triangle, its column `d` is empty. A "
+     "relative path starts from the folder of the case file. Without the key `facets`, hifdm determines the facets "
+     "from the cables"},
 
     {"surface.kind", HF_FIELD_WORD, AT(surface.kind), 0, 0, "auto", "", hf_surface_kind_word,
-     "Target surface. parabolic_cylinder is z = x^2/(4f) along y. paraboloid is z = (x^2 + y^2)/(4f). auto selects "
-     "the surface of a generated net, or the surface on which the inner nodes of an imported net lie"},
+     "The key `kind` selects the target surface. The surface `parabolic_cylinder` is the cylinder z = x^2/(4f) with "
+     "the focal length f. The surface `paraboloid` is the paraboloid z = (x^2 + y^2)/(4f) with the focal length f. For "
+     "a generated net, the value `auto` selects the surface of the generator. For an imported net, the value `auto` "
+     "selects the surface that contains the inner nodes"},
     {"surface.focal_length_m", HF_FIELD_DOUBLE, AT(surface.focal_length_m), HF_ABOVE_ZERO, 1e9, "", "m", NULL,
-     "Focal length of the target surface. Default: the focal length of a generated net"},
+     "The key `focal_length_m` sets the focal length of the target surface. For a generated net, the default value is "
+     "the focal length of the net"},
     {"surface.strip_width_m", HF_FIELD_DOUBLE, AT(surface.strip_width_m), HF_ABOVE_ZERO, 1e4, "", "m", NULL,
-     "Width of the flat strips along y, for the faceting error. Default: the width of a cell of parabolic_cylinder"},
+     "The key `strip_width_m` sets the width of flat strips along y for the faceting error. For a net over a parabolic "
+     "cylinder, the default width is the width of a cell"},
     {"surface.mesh_tension_N_per_m", HF_FIELD_DOUBLE, AT(surface.mesh_tension_N_per_m), 0, 1e6, "0", "N/m", NULL,
-     "Tension of the mesh, the same in all directions. The mesh bends the cables between two facets, so the facets "
-     "become pillows. 0: the facets are flat"},
+     "The key `mesh_tension_N_per_m` sets the tension of the mesh, which is equal in all directions. The tension of "
+     "the mesh bends the cables and curves the facets into pillows. If the mesh tension is 0 N/m, the facets are flat"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
-     "Up to 32 frequencies at which hifdm reports the gain loss (Ruze)"},
+     "The key `frequencies_Hz` lists up to 32 frequencies at which hifdm reports the gain loss by Ruze's formula"},
 
     {"surface.pattern.theta_deg", HF_FIELD_BOUNDS, AT(surface.pattern.theta_deg), -180, 180, "[-5, 5]", "deg", NULL,
-     "First and last angle of each cut, from +z. Negative angles are on the other side of +z"},
+     "The key `theta_deg` sets the first and the last angle of each far-field cut, measured from the +z axis. Negative "
+     "angles are on the opposite side of the +z axis"},
     {"surface.pattern.n_theta", HF_FIELD_INT, AT(surface.pattern.n_theta), 2, 4001, "721", "", NULL,
-     "Number of angles of each cut, in equal steps"},
+     "The key `n_theta` sets the number of equally spaced angles in each far-field cut"},
     {"surface.pattern.phi_deg", HF_FIELD_DOUBLE_LIST, AT(surface.pattern.phi_deg), -360, 360, "[0, 90]", "deg", NULL,
-     "Angles of up to 8 cuts, from +x towards +y"},
+     "The key `phi_deg` lists the angles of up to 8 far-field cuts, measured from +x towards +y"},
     {"surface.pattern.feed.kind", HF_FIELD_WORD, AT(surface.pattern.feed), 0, 0, "auto", "", hf_feed_word,
-     "point is a point source, line is a line source along y, and plane_wave is a plane wave that travels along -z. "
-     "auto selects line for a parabolic cylinder and point for a paraboloid"},
+     "The key `kind` selects the kind of feed. The feed `point` is a point source. The feed `line` is a line source "
+     "along y. The feed `plane_wave` is a plane wave that travels along -z. The value `auto` selects a line source for "
+     "a parabolic cylinder and a point source for a paraboloid"},
     {"surface.pattern.feed.position_m", HF_FIELD_VECTOR, AT(surface.pattern.position_m), -1e9, 1e9, "", "m", NULL,
-     "Position of the point source, or of a point on the line source. Default: the focus of the target surface"},
+     "The key `position_m` sets the position of the point source, or of one point on the line source. The default "
+     "position is the focus of the target surface"},
     {"surface.pattern.feed.aim_m", HF_FIELD_VECTOR, AT(surface.pattern.aim_m), -1e9, 1e9, "", "m", NULL,
-     "Point at which the feed aims. Default: the middle of the aperture, on the target surface"},
+     "The key `aim_m` sets the point at which the feed is aimed. By default, the feed is aimed at the centre of the "
+     "aperture, on the target surface"},
     {"surface.pattern.feed.cos_power", HF_FIELD_DOUBLE, AT(surface.pattern.cos_power), 0, 1e4, "", "", NULL,
-     "Exponent q. The field of the feed is proportional to cos^q of the angle from its axis, and the power of the "
-     "feed is proportional to cos^(2q). Default: the value with which the power at the edge of the facets is 10 dB "
-     "below the power on the axis, without the effect of the distances"},
+     "The key `cos_power` sets the exponent q of the feed. The field of the feed is proportional to cos^q of the angle "
+     "from the feed axis. The power of the feed is proportional to cos^(2q) of the angle from the feed axis. With the "
+     "default exponent, the power at the edge of the facets is 10 dB below the power on the axis. The 10 dB do not "
+     "include the effect of distance"},
     {"surface.pattern.feed.polarisation", HF_FIELD_WORD, AT(surface.pattern.polarisation), 0, 0, "x", "",
      HF_WORDS("x", "y"),
-     "Polarisation of the electric field on the axis of the feed. For a line source: across the line or along it"},
+     "The key `polarisation` sets the direction of the electric field on the feed axis. For a line source along y, `x` "
+     "is the direction across the line and `y` is the direction along the line"},
 
     {"form.method", HF_FIELD_WORD, AT(form.method), 0, 0, "auto", "", hf_method_word,
-     "With newton, every cable obeys its own law, solved by Newton's method on the energy. With hifdm, the iteration "
-     "of the paper (Eqs. 7, 8) solves the same laws. With iterative_fdm, every cable keeps a given tension (Eq. 7). "
-     "fdm is one linear solve with the initial force densities (Eqs. 5, 6). auto selects newton where it applies, "
-     "otherwise hifdm"},
+     "The key `method` selects the method of form-finding. The method `newton` finds the shape by Newton's method on "
+     "the energy, with the law of each cable. The method `hifdm` solves the same cable laws as the method `newton` by "
+     "the iteration of the paper (Eqs. 7 and 8). The method `iterative_fdm` applies a given tension to every cable "
+     "(Eq. 7). The method `fdm` solves one linear system with the initial force densities (Eqs. 5 and 6). The value "
+     "`auto` selects the method `newton` if this method is applicable, and otherwise the method `hifdm`"},
     {"form.pretension_N", HF_FIELD_DOUBLE, AT(form.pretension_N), HF_ABOVE_ZERO, 1e9, "10", "N", NULL,
-     "Uniform tension Td of the inner cables"},
+     "The key `pretension_N` sets the uniform tension Td of the inner cables"},
     {"form.prestress", HF_FIELD_WORD, AT(form.prestress), 0, 0, "given", "", HF_WORDS("given", "exact"),
-     "With given, every cable keeps its law. With exact, every cable gets the force density that holds all nodes at "
-     "their target positions. The tensions are then as close as equilibrium allows to those of the laws tension and "
-     "force_density. They are as uniform as possible for cables with the laws length and elastic"},
+     "The key `prestress` selects whether cable laws are given or hifdm computes force densities. If the key "
+     "`prestress` is `given`, every cable has its given law. If the key `prestress` is `exact`, hifdm computes force "
+     "densities that hold all nodes at their target positions. For cables with the laws `tension` and `force_density`, "
+     "these force densities approximate the given tensions as closely as equilibrium allows. For cables with the laws "
+     "`length` and `elastic`, the computed tensions are as uniform as possible"},
     {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", hf_stop_rule_word,
-     "Stopping rule of the iteration. With residual, it stops when equilibrium and lengths are within the "
-     "tolerances. With rms_change, it stops when psi changes by less than rms_tolerance_m. The paper uses "
-     "rms_change, which stops before equilibrium. Use this rule only to reproduce the paper"},
+     "The key `stop` selects the stopping rule of the iteration. With the rule `residual`, the iteration stops when "
+     "equilibrium and cable lengths are within their tolerances. With the rule `rms_change`, the iteration stops when "
+     "psi changes by less than `rms_tolerance_m`. The rule `rms_change` stops the iteration before equilibrium. Use "
+     "the rule `rms_change` only to reproduce the paper"},
     {"form.residual_tolerance", HF_FIELD_DOUBLE, AT(form.residual_tolerance), 1e-13, 1, "1e-7", "", NULL,
-     "Maximum residual force of a node, relative to the pretension"},
+     "The key `residual_tolerance` sets the maximum residual force of a node, divided by the pretension"},
     {"form.length_tolerance", HF_FIELD_DOUBLE, AT(form.length_tolerance), 1e-13, 1, "1e-7", "", NULL,
-     "Maximum |l/L*-1| of a taut cable with law length"},
+     "The key `length_tolerance` sets the maximum length error |l/L* - 1| of a taut cable with the law `length`. In "
+     "the length error, l is the length of the cable and L* is its target length"},
     {"form.rms_tolerance_m", HF_FIELD_DOUBLE, AT(form.rms_tolerance_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
-     "Change of psi between two iterations below which rms_change stops (0.001 mm in the paper)"},
+     "The key `rms_tolerance_m` sets the tolerance of the stopping rule `rms_change`. The iteration stops when psi "
+     "changes by less than the tolerance from one iteration to the next. The paper uses a tolerance of 0.001 mm"},
     {"form.max_iterations", HF_FIELD_INT, AT(form.max_iterations), 1, 10000000, "100000", "", NULL,
-     "Maximum number of iterations. A shape that needs more iterations is not converged"},
+     "The key `max_iterations` sets the maximum number of iterations. If the form-finding needs more than "
+     "`max_iterations` iterations, the shape has not converged"},
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
-     "A cable with law tension has collapsed if its length is below this fraction of its length at the target "
-     "positions"},
+     "The key `collapse_ratio` sets the limit below which a cable with the law `tension` has collapsed. The limit "
+     "applies to the length of the cable, divided by its length at the target positions"},
     {"form.factor", HF_FIELD_WORD, AT(form.factor), 0, 0, "own", "", HF_WORDS("own", "lapack"),
-     "own is the band Cholesky factorisation of hifdm. lapack uses dpbtrf and dpbtrs of LAPACK for the positive "
-     "definite matrices of form-finding, of designs and of refinement. With lapack, hifdm factors the matrix of each "
-     "design. Certificates and as-built nets always use own"},
+     "The key `factor` selects the code that factors matrices. The value `own` selects the band Cholesky factorisation "
+     "of hifdm. The value `lapack` selects the LAPACK routines dpbtrf and dpbtrs. LAPACK factors only the positive "
+     "definite matrices of the form-finding, the designs and the refinement. If the key `factor` is `lapack`, hifdm "
+     "factors the matrix of each design separately. For certificates and as-built nets, hifdm always uses its own "
+     "factorisation"},
 
     {"coupling.tof_m", HF_FIELD_DOUBLE, AT(form.coupling.tof_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
-     "The coupling has converged when no attachment moves farther than this in one step. The paper uses 1e-3"},
+     "The key `tof_m` sets the tolerance of the coupling. The coupling has converged when each attachment moves by at "
+     "most `tof_m` in one iteration. The paper uses a tolerance of 1e-3 m"},
     {"coupling.scheme", HF_FIELD_WORD, AT(form.coupling.scheme), 0, 0, "auto", "", hf_coupling_scheme_word,
-     "plain is the loop of the paper. accelerated adds Anderson acceleration, which needs fewer form-findings and "
-     "also converges for softer trusses. auto begins with accelerated. If that is slow and Newton's method solves "
-     "the net, auto solves net and truss in one matrix"},
+     "The key `scheme` selects the coupling scheme. The scheme `plain` is the iteration of the paper. The scheme "
+     "`accelerated` adds Anderson acceleration to the iteration of the paper. Anderson acceleration reduces the number "
+     "of form-findings. With Anderson acceleration, the coupling also converges for softer trusses. The scheme `auto` "
+     "begins with the scheme `accelerated`. If the scheme `accelerated` is slow and Newton's method solves the net, "
+     "the scheme `auto` solves net and truss in one matrix"},
     {"coupling.max_iterations", HF_FIELD_INT, AT(form.coupling.max_iterations), 1, 1000000, "200", "", NULL,
-     "Maximum number of form-findings in the coupling"},
+     "The key `max_iterations` sets the maximum number of form-findings in the coupling"},
 
     {"adjust.set", HF_FIELD_TEXT, AT(adjust.set), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
-     "Cables with turnbuckles: a set of the net, or inner, boundary, all"},
+     "The key `set` selects the cables with turnbuckles. The value of the key `set` is the name of a set of cables, or "
+     "`inner`, `boundary` or `all`"},
     {"adjust.range_m", HF_FIELD_DOUBLE, AT(adjust.range_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL,
-     "Maximum change of the cut length of each cable, in both directions"},
+     "The key `range_m` sets the maximum change of the cut length of each cable in either direction"},
     {"adjust.step_m", HF_FIELD_DOUBLE, AT(adjust.step_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL,
-     "Adjustments are multiples of this step"},
+     "The key `step_m` sets the step of the turnbuckles. Every turnbuckle adjustment is a multiple of the step"},
     {"adjust.max_adjustments", HF_FIELD_INT, AT(adjust.max_adjustments), 1, 1000000, "10", "", NULL,
-     "Maximum number of cables to adjust"},
+     "The key `max_adjustments` sets the maximum number of cables that hifdm adjusts"},
     {"adjust.target_m", HF_FIELD_DOUBLE, AT(adjust.target_m), 0, BIG, "0", "m", NULL,
-     "hifdm adds no further adjustment when the figure is below this value"},
+     "If the RMS error of the net is below the value of `target_m`, hifdm adjusts no further cables"},
     {"adjust.figure", HF_FIELD_WORD, AT(adjust.figure), 0, 0, "psi", "", hf_adjust_figure_word,
-     "RMS figure that the adjustments minimise. psi is the distance of the inner nodes from the positions that "
-     "adjust.aim selects. surface is the distance of the inner nodes from the target surface, along its normal. "
-     "facets is the distance of the facets from the target surface"},
+     "The key `figure` selects the RMS error that the adjustments minimise. The error `psi` is the RMS distance of the "
+     "inner nodes from the positions that the key `aim` selects. The error `surface` is the RMS distance of the inner "
+     "nodes from the target surface, along the normal of the surface. The error `facets` is the RMS distance of the "
+     "facets from the target surface"},
     {"adjust.aim", HF_FIELD_WORD, AT(adjust.aim), 0, 0, "design", "", hf_aim_word,
-     "Positions from which the figure psi is measured. design selects the positions in the shape of the design, so "
-     "the adjustments also restore its tensions. target_positions selects the target positions, including for nodes "
-     "that the design deliberately places elsewhere"},
+     "The key `aim` selects the positions from which hifdm measures the error `psi`. The value `design` selects the "
+     "positions of the nodes in the design. With the value `design`, the adjustments also restore the tensions of the "
+     "design. The value `target_positions` selects the target positions. With the value `target_positions`, hifdm also "
+     "uses the target positions of nodes that the design deliberately displaces"},
     {"adjust.sigma_m", HF_FIELD_DOUBLE, AT(adjust.sigma_m), HF_ABOVE_ZERO, BIG, "", "m", NULL,
-     "Standard deviation of each measured coordinate of nodes without their own sigma_m"},
+     "The key `sigma_m` sets the standard deviation of each measured coordinate. For nodes with a value in the column "
+     "`sigma_m` of the measurement, hifdm uses the measured value"},
 
     {"optimize.method", HF_FIELD_WORD, AT(optimize.method), 0, 0, "ga", "", hf_optimize_method_word,
-     "ga is the genetic algorithm. lm is Levenberg-Marquardt from the tensions of form-finding. ga+lm refines the "
-     "best design of the genetic algorithm by Levenberg-Marquardt. With ga, optimize.refine reports this refined "
-     "design only for comparison"},
+     "The key `method` selects the optimisation method. The method `ga` is the genetic algorithm. The method `lm` is "
+     "the Levenberg-Marquardt method, starting from the tensions of the form-finding. The method `ga+lm` refines the "
+     "best design of the genetic algorithm by the Levenberg-Marquardt method. If the method is `ga` and the key "
+     "`refine` requests a refinement, hifdm reports the refined design only for comparison"},
     {"optimize.refine", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", HF_WORDS("auto", "true", "false"),
-     "Whether hifdm also refines the best design of the genetic algorithm by Levenberg-Marquardt, for comparison. "
-     "auto refines it only if this takes little time, or less than a tenth of the time of the genetic algorithm"},
+     "The key `refine` selects whether hifdm refines the best design of the genetic algorithm for comparison. The "
+     "refinement uses the Levenberg-Marquardt method. The value `auto` requests the refinement only if the refinement "
+     "is short. A refinement of less than a tenth of the time of the genetic algorithm is always short"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
-     "Rule that determines how the pretension T' of a design acts on a boundary cable. With force_density, the cable "
-     "keeps q = T'/L*, so the shape is always unique. With tension, the cable keeps T'. With seeded, Eq. 8 starts "
-     "from q = T'/L* and stops by rms_change, so the optimum depends on the iteration at which it stops"},
+     "The key `rule` selects how the pretension T' of a design acts on a boundary cable. With the rule "
+     "`force_density`, the cable has the force density T'/L*, where L* is the target length. With the rule "
+     "`force_density`, the shape is always unique. With the rule `tension`, the tension of the cable is T'. With the "
+     "rule `seeded`, Eq. 8 starts from the force density T'/L* and stops by the rule `rms_change`. With the rule "
+     "`seeded`, the optimum depends on the iteration at which the form-finding stops"},
     {"optimize.symmetry", HF_FIELD_WORD, AT(optimize.symmetry), 0, 0, "none", "", hf_symmetry_word,
-     "Boundary cables that are mirror images of each other change by the same amount, so a design has fewer "
-     "variables. The mirror planes are in the middle of the net along x, along y, or both. auto: those of the two "
-     "planes about which the net is symmetric"},
+     "The key `symmetry` selects mirror planes of the net. Boundary cables that are mirror images of each other change "
+     "by the same amount. Symmetry therefore reduces the number of design variables. The values `x`, `y` and `xy` "
+     "select the plane in the middle of the net along x, along y, or both planes. The value `auto` selects each of the "
+     "two planes about which the net is symmetric"},
     {"optimize.solver", HF_FIELD_WORD, AT(optimize.solver), 0, 0, "auto", "", hf_solver_word,
-     "Solver of the individuals. With chord, all designs share one factored Newton matrix, and one pass solves eight "
-     "designs. With newton, each design has its own matrix. fixed_point is the iteration of the paper. auto selects "
-     "the first of these solvers that applies"},
-    {"optimize.population", HF_FIELD_INT, AT(optimize.population), 2, 100000, "50", "", NULL, "Number of individuals"},
+     "The key `solver` selects the solver of the individuals. With the solver `chord`, all designs share one factored "
+     "Newton matrix. The solver `chord` solves eight designs at a time. The solver `newton` factors a separate matrix "
+     "for each design. The solver `fixed_point` is the iteration of the paper. The value `auto` selects the first "
+     "applicable solver in the order `chord`, `newton`, `fixed_point`"},
+    {"optimize.population", HF_FIELD_INT, AT(optimize.population), 2, 100000, "50", "", NULL,
+     "The key `population` sets the number of individuals"},
     {"optimize.generations", HF_FIELD_INT, AT(optimize.generations), 1, 1000000, "400", "", NULL,
-     "Maximum number of generations"},
+     "The key `generations` sets the maximum number of generations"},
     {"optimize.range_N", HF_FIELD_DOUBLE, AT(optimize.range_N), HF_ABOVE_ZERO, 1e9, "1", "N", NULL,
-     "Maximum change |dT| of a boundary pretension from its value after form-finding (Eq. 13)"},
+     "The key `range_N` sets the maximum change |dT| of a boundary pretension from its value after form-finding (Eq. "
+     "13)"},
     {"optimize.min_tension_N", HF_FIELD_DOUBLE, AT(optimize.min_tension_N), HF_ABOVE_ZERO, 1e9, "0.1", "N", NULL,
-     "Lower bound of each boundary pretension (Eq. 12: above zero)"},
+     "The key `min_tension_N` sets the lower bound of each boundary pretension. Eq. 12 of the paper requires "
+     "pretensions above 0 N"},
     {"optimize.max_tension_N", HF_FIELD_DOUBLE, AT(optimize.max_tension_N), HF_ABOVE_ZERO, BIG, "1e6", "N", NULL,
-     "Upper bound of each boundary pretension"},
+     "The key `max_tension_N` sets the upper bound of each boundary pretension"},
     {"optimize.boundary_ratio_cap", HF_FIELD_DOUBLE, AT(optimize.boundary_ratio_cap), 1, BIG, "10", "", NULL,
-     "Maximum boundary tension ratio. An individual with a larger ratio is infeasible"},
+     "The key `boundary_ratio_cap` sets the maximum boundary tension ratio. If the boundary tension ratio of an "
+     "individual exceeds the maximum, the individual is infeasible"},
     {"optimize.seed", HF_FIELD_UINT64, AT(optimize.seed), 0, 18446744073709551615.0, "1", "", NULL,
-     "Seed of the random numbers. The same seed gives the same run with any number of threads"},
+     "The key `seed` sets the seed of the random numbers. For any number of threads, the same seed leads to the same "
+     "results"},
     {"optimize.crossover_high", HF_FIELD_DOUBLE, AT(optimize.crossover_high), 0, 1, "0.9", "", NULL,
-     "Pc1 of the adaptive crossover rate (Srinivas & Patnaik 1994)"},
-    {"optimize.crossover_low", HF_FIELD_DOUBLE, AT(optimize.crossover_low), 0, 1, "0.6", "", NULL, "Pc2"},
-    {"optimize.mutation_high", HF_FIELD_DOUBLE, AT(optimize.mutation_high), 0, 1, "0.1", "", NULL, "Pm1"},
-    {"optimize.mutation_low", HF_FIELD_DOUBLE, AT(optimize.mutation_low), 0, 1, "0.001", "", NULL, "Pm2"},
+     "The key `crossover_high` sets the parameter Pc1 of the adaptive crossover rate (Srinivas and Patnaik 1994)"},
+    {"optimize.crossover_low", HF_FIELD_DOUBLE, AT(optimize.crossover_low), 0, 1, "0.6", "", NULL,
+     "The key `crossover_low` sets the parameter Pc2 of the adaptive crossover rate"},
+    {"optimize.mutation_high", HF_FIELD_DOUBLE, AT(optimize.mutation_high), 0, 1, "0.1", "", NULL,
+     "The key `mutation_high` sets the parameter Pm1 of the adaptive mutation rate"},
+    {"optimize.mutation_low", HF_FIELD_DOUBLE, AT(optimize.mutation_low), 0, 1, "0.001", "", NULL,
+     "The key `mutation_low` sets the parameter Pm2 of the adaptive mutation rate"},
     {"optimize.variation", HF_FIELD_WORD, AT(optimize.variation), 0, 0, "difference", "",
      HF_WORDS("difference", "chain"),
-     "With difference, a crossover moves an elite along the difference of two parents, and children replace worse "
-     "individuals. With chain, a crossover mixes two parents chain by chain, and children replace the whole "
-     "generation"},
+     "The key `variation` selects how the genetic algorithm creates children. With the variation `difference`, a "
+     "crossover moves an elite individual along the difference of two parents. Children of the variation `difference` "
+     "replace worse individuals. With the variation `chain`, a crossover exchanges the values of whole chains between "
+     "two parents. Children of the variation `chain` replace the whole generation"},
     {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
-     "Number of best individuals that survive unchanged. With variation: difference, the crossovers start from these "
+     "The key `elites` sets the number of elite individuals, which are the best individuals of a generation. Elite "
+     "individuals survive unchanged. If the variation is `difference`, the crossovers start from the elite "
      "individuals"},
     {"optimize.stagnation_tolerance_m", HF_FIELD_DOUBLE, AT(optimize.stagnation_tolerance_m), 0, BIG, "1e-6", "m", NULL,
-     "Stagnation tolerance. The genetic algorithm stops if the best psi or merit improves by less than this value in "
-     "stagnation_generations generations"},
+     "The key `stagnation_tolerance_m` sets the stagnation tolerance. If the best psi or merit improves by less than "
+     "this tolerance in `stagnation_generations` generations, the genetic algorithm stops"},
     {"optimize.stagnation_generations", HF_FIELD_INT, AT(optimize.stagnation_generations), 1, 1000000, "50", "", NULL,
-     "Number of generations over which stagnation_tolerance_m is measured"},
+     "The key `stagnation_generations` sets the number of generations over which hifdm measures the improvement of the "
+     "best individual"},
     {"optimize.store", HF_FIELD_WORD, AT(optimize.store), 0, 0, "all", "", hf_keep_word,
-     "Individuals that the result file stores. With all, it stores every individual. With best, it stores the best "
-     "individual of each generation. With every, it stores one generation in store_every. The last generation is "
-     "always stored"},
+     "The key `store` selects the individuals that hifdm stores in the result file. The value `all` selects all "
+     "individuals of all generations. The value `best` selects the best individual of each generation. The value "
+     "`every` selects one generation in every `store_every` generations. hifdm always stores the last generation"},
     {"optimize.store_every", HF_FIELD_INT, AT(optimize.store_every), 2, 1000000, "100", "", NULL,
-     "With store: every, generations 0, n, 2n, ... are stored"},
+     "The key `store_every` sets the interval n of the stored generations if the key `store` is `every`. With the "
+     "interval n, hifdm stores the generations 0, n, 2n and so on"},
     {"optimize.refine_steps", HF_FIELD_INT, AT(optimize.refine_steps), 1, 100000, "200", "", NULL,
-     "Maximum number of Levenberg-Marquardt steps"},
+     "The key `refine_steps` sets the maximum number of steps of the Levenberg-Marquardt method"},
     {"optimize.samples", HF_FIELD_INT, AT(optimize.samples), 2, 100000, "64", "", NULL,
-     "Number of nets with errors from which objectives over samples are computed. All designs have the same errors: "
-     "the first samples that tolerance.sampling random draws"},
+     "The key `samples` sets the number of as-built samples for objectives over samples. hifdm applies the same random "
+     "errors to all designs. The random errors are the first samples of the sampling method `random`"},
     {"optimize.front_points", HF_FIELD_INT, AT(optimize.front_points), 3, HF_FRONT_POINTS_MAX, "21", "", NULL,
-     "Number of points of optimize.front that Levenberg-Marquardt finds, including both ends"},
+     "The key `front_points` sets the number of points of the Pareto front that the Levenberg-Marquardt method "
+     "computes. The number of points includes the ends of the Pareto front"},
 
     {"tolerance.sigma_cut_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_cut_m), 0, 1, "0", "m", NULL,
-     "Standard deviation of each cut length"},
+     "The key `sigma_cut_m` sets the standard deviation of each cut length"},
     {"tolerance.sigma_cut_ratio", HF_FIELD_DOUBLE, AT(tolerance.sigma_cut_ratio), 0, 0.05, "0", "", NULL,
-     "Standard deviation of each cut length as a fraction of the length, such as the scale error of a measuring tape"},
+     "The key `sigma_cut_ratio` sets the standard deviation of each cut length as a fraction of the length. The scale "
+     "error of a measuring tape is an example of a relative length error"},
     {"tolerance.sigma_EA_ratio", HF_FIELD_DOUBLE, AT(tolerance.sigma_EA_ratio), 0, 0.05, "0", "", NULL,
-     "Standard deviation of each EA, as a fraction of EA"},
+     "The key `sigma_EA_ratio` sets the standard deviation of each axial stiffness EA as a fraction of EA"},
     {"tolerance.sigma_support_m", HF_FIELD_DOUBLE, AT(tolerance.sigma_support_m), 0, 1, "0", "m", NULL,
-     "Standard deviation of each coordinate of each support. For an attachment, this is the position before the "
-     "truss deflects"},
+     "The key `sigma_support_m` sets the standard deviation of each coordinate of each support. For an attachment to "
+     "the truss, the error applies to the position before the truss deflects"},
     {"tolerance.sigma_temperature_K", HF_FIELD_DOUBLE, AT(tolerance.sigma_temperature_K), 0, 1000, "0", "K", NULL,
-     "Standard deviation of the temperature, which is the same for all cables. This key requires "
-     "cables.expansion_per_K. For the truss, use tolerance.truss"},
+     "The key `sigma_temperature_K` sets the standard deviation of the net temperature. All cables of a sample have "
+     "the same temperature error. The key `sigma_temperature_K` requires the key `expansion_per_K` in the list "
+     "`cables`. For temperature errors of the truss, use the list `tolerance.truss`"},
     {"tolerance.distribution", HF_FIELD_WORD, AT(tolerance.distribution), 0, 0, "normal", "", hf_distribution_word,
-     "Distribution of each error. A uniform distribution extends to 1.73 times the standard deviation"},
+     "The key `distribution` selects the distribution of each error. A uniform distribution ends at 1.73 standard "
+     "deviations on both sides of the mean"},
     {"tolerance.batch", HF_FIELD_DOUBLE, AT(tolerance.batch), 0, 1, "0", "", NULL,
-     "Correlation of the errors of sigma_cut_ratio, and of the errors of sigma_EA_ratio, among the cables of one "
-     "spool. A spool is a set of the net. A cable that is in several sets belongs to the first set by name. A cable "
-     "without a set belongs to the spool inner or boundary"},
+     "The key `batch` sets the correlation of errors among the cables of one spool. The correlation applies separately "
+     "to relative errors of cut length and to relative errors of stiffness. Each set of cables is one spool. If a "
+     "cable is in several sets, the first set by name is the spool of the cable. A cable without a set belongs to the "
+     "spool `inner` or to the spool `boundary`"},
     {"tolerance.samples", HF_FIELD_INT, AT(tolerance.samples), 10, 100000000, "1000", "", NULL,
-     "Number of samples. With fewer than 10 samples, the 95 % confidence intervals, which assume normal "
-     "distributions, would be more than 15 % too narrow"},
+     "The key `samples` sets the number of samples. With fewer than 10 samples, the 95 % confidence intervals would be "
+     "more than 15 % too narrow. The confidence intervals assume normal distributions"},
     {"tolerance.seed", HF_FIELD_UINT64, AT(tolerance.seed), 0, 18446744073709551615.0, "1", "", NULL,
-     "Seed of the random numbers. The same seed gives the same samples with any number of threads"},
+     "The key `seed` sets the seed of the random numbers. For any number of threads, the same seed leads to the same "
+     "samples"},
     {"tolerance.sampling", HF_FIELD_WORD, AT(tolerance.sampling), 0, 0, "random", "", hf_sampling_word,
-     "random uses random numbers. sobol uses Sobol's sequence in the 40 directions of errors that change the shape "
-     "most, which converges faster"},
+     "The key `sampling` selects the sampling method. The method `random` uses random numbers. The method `sobol` uses "
+     "Sobol's sequence in the 40 error directions that change the shape most. Statistics over Sobol points converge "
+     "faster than statistics over random points"},
     {"tolerance.required_yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL,
-     "Required fraction of samples that meet tolerance.require. If it is above 0, the run reports the factor by "
-     "which all errors may grow or must shrink"},
+     "The key `required_yield` sets the fraction of samples that must meet the requirements in `tolerance.require`. If "
+     "the required yield is above 0, hifdm reports the factor by which all errors may grow or must shrink"},
 
 #define FIELD(section, member, type, ...) {"truss." #member, type, AT(section.member), __VA_ARGS__},
     HF_TRUSS_KEYS(FIELD, truss)
 #undef FIELD
         {"truss.match_tolerance_m", HF_FIELD_DOUBLE, AT(truss.match_tolerance_m), 0, 1e3, "1e-6", "m", NULL,
-         "Maximum distance between a support of the net and the truss node that carries it"},
+         "The key `match_tolerance_m` sets the maximum distance between a support of the net and the truss node that "
+         "carries the support"},
 
 #define FIELD(section, member, type, ...) {"truss." #section "." #member, type, AT(truss.section.member), __VA_ARGS__},
 #define UNIT(section, diameter, panels) HF_TRUSS_UNIT_KEYS(FIELD, section, diameter, panels)
@@ -281,12 +364,16 @@ const hf_field hf_field_table[] = {
 #undef FIELD
 
                     {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-                     "CSV file id,x_m,y_m,z_m,fixed[,mass_kg] of the nodes. fixed is a list of ux uy uz rx ry rz, or "
-                     "all, or empty. The path is relative to the case file"},
+                     "The key `nodes` sets the path of the CSV file with the nodes of the truss. The columns of the "
+                     "node file are `id,x_m,y_m,z_m,fixed[,mass_kg]`. Columns in brackets are optional. The column "
+                     "`fixed` contains `all`, or a list of the degrees of freedom `ux uy uz rx ry rz`, or is empty. A "
+                     "relative path starts from the folder of the case file"},
     {"truss.import.members", HF_FIELD_TEXT, AT(truss_members_path), 1, HF_PATH_SIZE, NULL, "", NULL,
-     "CSV file "
-     "id,i,j,E_Pa,A_m2[,G_Pa,Iy_m4,Iz_m4,J_m4,Asy_m2,Asz_m2,roll_rad,density_kg_per_m3,expansion_per_K,joint,unit] "
-     "of the members. joint is rigid or pinned. The path is relative to the case file"},
+     "The key `members` sets the path of the CSV file with the members of the truss. The columns of the member file "
+     "are "
+     "`id,i,j,E_Pa,A_m2[,G_Pa,Iy_m4,Iz_m4,J_m4,Asy_m2,Asz_m2,roll_rad,density_kg_per_m3,expansion_per_K,joint,unit]`. "
+     "Columns in brackets are optional. The column `joint` contains `rigid` or `pinned`. A relative path starts from "
+     "the folder of the case file"},
 };
 const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
 
@@ -299,123 +386,168 @@ _Static_assert(IN(variable, range_ratio) == IN(variable, range) + sizeof(double)
                "a range is an amount, bounds are bounds");
 static const hf_field variable_field[] = {
     {"set", HF_FIELD_TEXT, IN(variable, set), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
-     "Cables that vary, or cables whose supports vary: a set of the net, or inner, boundary, all"},
+     "The key `set` selects the cables that vary, or the cables whose supports vary. The value of the key `set` is the "
+     "name of a set of cables, or `inner`, `boundary` or `all`"},
     {"vary", HF_FIELD_WORD, IN(variable, vary), 0, 0, NULL, "", hf_vary_word,
-     "Quantity that varies. With tension (N), force_density (N/m) or length (m), the cable keeps the value. "
-     "unstressed_length (m) is for cables with law elastic. support_z, support_normal and support_xyz (m) displace the "
-     "supports at the ends of the cables along z, along the normal of the target surface, or in all three directions"},
+     "The key `vary` selects the quantity that varies. For the quantities `tension` (N), `force_density` (N/m) and "
+     "`length` (m), the cables obey the law of the same name. The quantity `unstressed_length` (m) is available only "
+     "for cables with the law `elastic`. The quantity `support_z` (m) is a displacement of the cable supports along z. "
+     "The quantity `support_normal` (m) is a displacement of the cable supports along the normal of the target "
+     "surface. The quantity `support_xyz` (m) is a displacement of the cable supports in all three directions"},
     {"range", HF_FIELD_AMOUNT, IN(variable, range), HF_ABOVE_ZERO, BIG, "", "", NULL,
-     "Maximum change from the value after form-finding, in the unit of the quantity or in per cent of the value. "
-     "Default: as far as the bounds allow"},
+     "The key `range` sets the maximum change of the quantity from its value after form-finding. The range has the "
+     "unit of the quantity, or is a percentage of the value after form-finding. Without the key `range`, only the key "
+     "`bounds` limits the change"},
     {"bounds", HF_FIELD_BOUNDS, IN(variable, lower), -BIG, BIG, "", "", NULL,
-     "Lower and upper bound, in the unit of the quantity. Default: none"},
+     "The key `bounds` sets the lower bound and the upper bound of the quantity, in its unit. Without the key "
+     "`bounds`, only the key `range` limits the quantity"},
     {"link", HF_FIELD_WORD, IN(variable, link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry"),
-     "Variables that change together. With each, every cable changes on its own. With set, all cables of the row "
-     "change by the same amount. With symmetry, mirror images change by the same amount (optimize.symmetry)"},
+     "The key `link` selects the design variables that change together. With the value `each`, every cable changes "
+     "independently. With the value `set`, all cables of the row change by the same amount. With the value `symmetry`, "
+     "cables that are mirror images of each other change by the same amount. The key `optimize.symmetry` selects the "
+     "mirror planes"},
 };
 
 static const hf_field objective_field[] = {
     {"figure", HF_FIELD_WORD, IN(objective, figure), 0, 0, NULL, "", hf_figure_kind_word,
-     "psi: RMS distance of the inner nodes to their target positions (m); surface: RMS distance of the inner nodes "
-     "to the target surface (m); facets: RMS distance of the facets to the target surface (m); tension, length: RMS "
-     "difference from target over the set (N, m); evenness: standard deviation of the tensions of the set divided by "
-     "their mean; pull: maximum force of the net on a support (N); deflection: maximum deflection of the truss at an "
-     "attachment (m); mass: mass of the cables of the set (kg); ratio: maximum tension of the set divided by its "
-     "minimum tension; gain: square root of the fraction of the gain that the shape loses in the direction of the "
-     "beam, by physical optics (surface.pattern)"},
+     "The key `figure` selects the quantity that hifdm minimises. The quantity `psi` is the RMS distance of the inner "
+     "nodes from their target positions (m). The quantity `surface` is the RMS distance of the inner nodes from the "
+     "target surface (m). The quantity `facets` is the RMS distance of the facets from the target surface (m). The "
+     "quantity `tension` is the RMS difference between the tensions of the set and the target (N). The quantity "
+     "`length` is the RMS difference between the lengths of the set and the target (m). The quantity `evenness` is the "
+     "standard deviation of the tensions of the set divided by their mean. The quantity `pull` is the maximum force of "
+     "the net on a support (N). The quantity `deflection` is the maximum deflection of the truss at an attachment (m). "
+     "The quantity `mass` is the mass of the cables of the set (kg). The quantity `ratio` is the maximum tension of "
+     "the set divided by its minimum tension. The quantity `gain` is the square root of the fraction of gain lost in "
+     "the direction of the beam. hifdm computes the lost gain by physical optics with the settings of the section "
+     "`surface.pattern`"},
     {"set", HF_FIELD_TEXT, IN(objective, set), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "Cables of tension, length, evenness, mass and ratio. Default: all"},
+     "The key `set` selects the cables of the quantities `tension`, `length`, `evenness`, `mass` and `ratio`. By "
+     "default, the objective applies to all cables"},
     {"target", HF_FIELD_DOUBLE, IN(objective, target), -BIG, BIG, "", "", NULL,
-     "Target of tension (N, required) or of length (m). Default for length: the lengths at the target positions"},
+     "The key `target` sets the target value of the quantity `tension` (N) or `length` (m). The quantity `tension` "
+     "requires the key `target`. For the quantity `length`, the default targets are the cable lengths at the target "
+     "positions"},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(objective, mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL,
-     "Mass of the cables per metre, required for the figure mass"},
+     "The key `mass_kg_per_m` sets the mass of the cables per metre. The quantity `mass` requires the key "
+     "`mass_kg_per_m`"},
     {"along", HF_FIELD_WORD, IN(objective, along), 0, 0, "normal", "", HF_WORDS("normal", "half_path"),
-     "Distance that surface and facets measure. normal is the distance along the normal. half_path is half the "
-     "change of the path of a ray"},
+     "The key `along` selects the distance for the quantities `surface` and `facets`. The value `normal` selects the "
+     "distance along the normal of the target surface. The value `half_path` selects half the change in the path "
+     "length of a ray"},
     {"fit", HF_FIELD_WORD, IN(objective, fit), 0, 0, "none", "", HF_WORDS("none", "best"),
-     "Reference for surface and facets: the target surface itself, or its best fit to the shape"},
+     "The key `fit` selects the reference surface for the quantities `surface` and `facets`. The value `none` selects "
+     "the target surface itself. The value `best` selects the best fit of the target surface to the shape"},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(objective, frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL,
-     "Frequency of the figure gain. Default: the highest of surface.frequencies_Hz"},
+     "The key `frequency_Hz` sets the frequency of the quantity `gain`. The default frequency is the highest frequency "
+     "in the key `surface.frequencies_Hz`"},
     {"load_case", HF_FIELD_TEXT, IN(objective, load_case), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "Name of the load case in which the figure is computed on the as-built net. all computes the figure in all load "
-     "cases"},
+     "The key `load_case` selects the load case in which hifdm computes the quantity for the as-built net. If the key "
+     "`load_case` is `all`, hifdm computes the quantity in all load cases"},
     {"over", HF_FIELD_WORD, IN(objective, over), 0, 0, "design", "", hf_over_word,
-     "Nets from which the figure is computed: the design itself, or samples with the errors of `tolerance`"},
+     "The key `over` selects the nets for which hifdm computes the quantity. The value `design` selects the design "
+     "itself. The value `samples` selects as-built samples with the errors of the section `tolerance`"},
     {"take", HF_FIELD_WORD, IN(objective, take), 0, 0, "mean", "", hf_take_word,
-     "Combination of the values of all load cases or samples. mean is their RMS value, and worst is their maximum"},
+     "The key `take` selects how hifdm combines the values of all load cases or samples. The value `mean` selects the "
+     "RMS of the values. The value `worst` selects the maximum of the values"},
     {"quantile", HF_FIELD_DOUBLE, IN(objective, quantile), HF_ABOVE_ZERO, 1, "", "", NULL,
-     "Quantile over the samples, in place of take. This fraction of the samples has no larger value. Only the method "
-     "ga supports this key"},
+     "The key `quantile` replaces the key `take` by a quantile of the values of all samples. The value of the key "
+     "`quantile` is the fraction of samples that do not exceed the quantile. Only the optimisation method `ga` "
+     "supports the key `quantile`"},
     {"weight", HF_FIELD_DOUBLE, IN(objective, weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
-     "Weight of this objective in the merit of a design, the square root of the sum of (weight * value)^2"},
+     "The key `weight` sets the weight of an objective in the merit of a design. The merit is the square root of the "
+     "sum of (weight * value)^2 over all objectives"},
 };
 
 _Static_assert(IN(limit, upper) == IN(limit, lower) + sizeof(double), "bounds are bounds");
 static const hf_field limit_field[] = {
     {"figure", HF_FIELD_WORD, IN(limit, figure), 0, 0, NULL, "", hf_limit_word,
-     "tension limits the tension of each cable of the set (N). ratio limits the maximum tension of the set divided "
-     "by its minimum tension. deflection limits the deflection of the truss at each attachment (m)"},
+     "The key `figure` selects the quantity that hifdm limits. The limit `tension` applies to the tension of each "
+     "cable of the set (N). The limit `ratio` applies to the maximum tension of the set divided by its minimum "
+     "tension. The limit `deflection` applies to the deflection of the truss at each attachment (m)"},
     {"set", HF_FIELD_TEXT, IN(limit, set), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "Cables of tension and ratio. Default: all"},
-    {"bounds", HF_FIELD_BOUNDS, IN(limit, lower), -BIG, BIG, NULL, "", NULL, "Lower and upper bound"},
+     "The key `set` selects the cables of the limits `tension` and `ratio`. By default, the limit applies to all "
+     "cables"},
+    {"bounds", HF_FIELD_BOUNDS, IN(limit, lower), -BIG, BIG, NULL, "", NULL,
+     "The key `bounds` sets the lower bound and the upper bound of the quantity"},
 };
 
 static const hf_field cable_field[] = {
     {"set", HF_FIELD_TEXT, IN(cable, set), 1, HF_SET_NAME_SIZE, "all", "", NULL,
-     "Cables of the row: a set of the net, or inner, boundary, all"},
+     "The key `set` selects the cables to which the row applies. The value of the key `set` is the name of a set of "
+     "cables, or `inner`, `boundary` or `all`"},
     {"expansion_per_K", HF_FIELD_DOUBLE, IN(cable, expansion_per_K), -1, 1, "", "1/K", NULL,
-     "Thermal expansion of the cables. 0: no expansion"},
+     "The key `expansion_per_K` sets the coefficient of thermal expansion of the cables. The value 0 describes cables "
+     "without thermal expansion"},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(cable, mass_kg_per_m), 0, 1e6, "", "kg/m", NULL,
-     "Mass of the cables per metre of unstressed length"},
+     "The key `mass_kg_per_m` sets the mass of the cables per metre of unstressed length"},
 };
 
 static const hf_field node_field[] = {
     {"role", HF_FIELD_WORD, IN(node, role), 0, 0, "all", "", hf_nodes_word,
-     "Nodes of the row: the nodes of a role, or all"},
-    {"mass_kg", HF_FIELD_DOUBLE, IN(node, mass_kg), 0, 1e6, NULL, "kg", NULL, "Mass of each node"},
+     "The key `role` selects the nodes to which the row applies. The value of the key `role` is a role of nodes, or "
+     "`all`"},
+    {"mass_kg", HF_FIELD_DOUBLE, IN(node, mass_kg), 0, 1e6, NULL, "kg", NULL,
+     "The key `mass_kg` sets the mass of each node"},
 };
 
 static const hf_field load_case_field[] = {
     {"name", HF_FIELD_TEXT, IN(load_case, name), 1, HF_SET_NAME_SIZE, NULL, "", NULL,
-     "Name of the load case, of letters, digits, _ and -. Rows with the same name form one load case"},
+     "The key `name` sets the name of the load case. The name consists of letters, digits, underscores and hyphens. "
+     "Rows with the same name form one load case"},
     {"set", HF_FIELD_TEXT, IN(load_case, set), 1, HF_SET_NAME_SIZE, "", "", NULL,
-     "Cables to which the temperature applies: a set of the net, or inner, boundary, all"},
+     "The key `set` selects the cables to which the temperature applies. The value of the key `set` is the name of a "
+     "set of cables, or `inner`, `boundary` or `all`"},
     {"part", HF_FIELD_WORD, IN(load_case, part), 0, 0, "all", "", hf_part_word,
-     "Part to which the temperature applies: net and truss, all cables, the whole truss, or the members of one truss "
-     "unit"},
+     "The key `part` selects the part of the structure to which the temperature applies. The value `all` selects net "
+     "and truss. The value `net` selects all cables. The value `truss` selects the whole truss. Any other value of the "
+     "key `part` selects the members of one truss unit"},
     {"temperature_K", HF_FIELD_DOUBLE, IN(load_case, temperature_K), -1e4, 1e4, "", "K", NULL,
-     "Difference from the temperature at which the cables were cut and the truss was made. If several rows of a load "
-     "case give the temperature of a part, the last row applies"},
+     "The key `temperature_K` sets the difference from the reference temperature. At the reference temperature, the "
+     "cables were cut and the truss was made. If several rows of a load case set the temperature of a part, the last "
+     "row applies"},
     {"gradient_K_per_m", HF_FIELD_VECTOR, IN(load_case, gradient_K_per_m), -1e4, 1e4, "", "K/m", NULL,
-     "Temperature gradient. It adds to temperature_K, in proportion to the distance from the origin"},
+     "The key `gradient_K_per_m` sets the temperature gradient. At each position, hifdm adds the scalar product of "
+     "gradient and position to the value of `temperature_K`"},
     {"gravity_m_per_s2", HF_FIELD_DOUBLE, IN(load_case, gravity_m_per_s2), HF_ABOVE_ZERO, 1e6, "", "m/s2", NULL,
-     "Acceleration of gravity, for the weight of cables, nodes and truss"},
+     "The key `gravity_m_per_s2` sets the gravitational acceleration, from which hifdm computes the weight of cables, "
+     "nodes and truss"},
     {"direction", HF_FIELD_VECTOR, IN(load_case, direction), -1e9, 1e9, "", "", NULL,
-     "Direction of gravity, a vector of any length. Default: [0, 0, -1]"},
-    {"force_N", HF_FIELD_VECTOR, IN(load_case, force_N), -1e12, 1e12, "", "N", NULL, "Force on each node of the role"},
-    {"role", HF_FIELD_WORD, IN(load_case, role), 0, 0, "all", "", hf_nodes_word, "Nodes on which force_N acts"},
+     "The key `direction` sets the direction of gravity as a vector of any length. The default direction is [0, 0, "
+     "-1]"},
+    {"force_N", HF_FIELD_VECTOR, IN(load_case, force_N), -1e12, 1e12, "", "N", NULL,
+     "The key `force_N` sets the force on each node with the selected role"},
+    {"role", HF_FIELD_WORD, IN(load_case, role), 0, 0, "all", "", hf_nodes_word,
+     "The key `role` selects the nodes on which the force `force_N` acts"},
     {"support_displacement_m", HF_FIELD_VECTOR, IN(load_case, support_displacement_m), -1e6, 1e6, "", "m", NULL,
-     "Displacement of all supports from their positions in the design. On a truss, the displacement from the "
-     "positions that the truss gives them"},
+     "The key `support_displacement_m` sets the displacement of all supports from their positions in the design. If a "
+     "truss carries the net, hifdm adds the displacement to the positions on the deflected truss"},
     {"nodes", HF_FIELD_TEXT, IN(load_case, nodes_path), 1, HF_PATH_SIZE, "", "", NULL,
-     "CSV id[,Fx_N,Fy_N,Fz_N][,dx_m,dy_m,dz_m] with forces on nodes and displacements of supports. The path is "
-     "relative to the case file"},
+     "The key `nodes` sets the path of a CSV file with forces on nodes and displacements of supports. The columns of "
+     "the CSV file are `id[,Fx_N,Fy_N,Fz_N][,dx_m,dy_m,dz_m]`. Columns in brackets are optional. A relative path "
+     "starts from the folder of the case file"},
 };
 
 static const hf_field require_field[] = {
     {"measure", HF_FIELD_WORD, IN(require, measure), 0, 0, NULL, "", hf_tolerance_measure_word,
-     "Figure of each as-built net. Surface figures need a section surface, and facet figures a net with facets. Losses "
-     "by Ruze's formula (...gain_loss_dB) need surface.frequencies_Hz, and pattern_loss_dB needs surface.pattern. "
-     "Figures with fit_ are those after the best fit, that is, after the reflector has been pointed and focused again"},
-    {"at_most", HF_FIELD_DOUBLE, IN(require, at_most), -BIG, BIG, "", "", NULL, "Maximum allowed value"},
-    {"at_least", HF_FIELD_DOUBLE, IN(require, at_least), -BIG, BIG, "", "", NULL, "Minimum allowed value"},
+     "The key `measure` selects a measure of each as-built net. Measures of the surface require the section `surface`. "
+     "Measures of the facets require a net with facets. Losses by Ruze's formula have names that end in "
+     "`gain_loss_dB`. Losses by Ruze's formula require the key `surface.frequencies_Hz`. The measure `pattern_loss_dB` "
+     "requires the section `surface.pattern`. hifdm computes measures with `fit_` in their name after the best fit. "
+     "The best fit corresponds to a reflector that has been pointed and focused again"},
+    {"at_most", HF_FIELD_DOUBLE, IN(require, at_most), -BIG, BIG, "", "", NULL,
+     "The key `at_most` sets the maximum allowed value of the measure"},
+    {"at_least", HF_FIELD_DOUBLE, IN(require, at_least), -BIG, BIG, "", "", NULL,
+     "The key `at_least` sets the minimum allowed value of the measure"},
 };
 
 static const hf_field truss_heat_field[] = {
     {"part", HF_FIELD_WORD, IN(truss_heat, part), 0, 0, NULL, "", hf_part_word + HF_PART_TRUSS,
-     "Members to which this temperature applies: the whole truss, or one truss unit"},
+     "The key `part` selects the members to which the temperature error applies. The value `truss` selects the whole "
+     "truss. Any other value of the key `part` selects the members of one truss unit"},
     {"sigma_temperature_K", HF_FIELD_DOUBLE, IN(truss_heat, sigma_temperature_K), HF_ABOVE_ZERO, 1000, NULL, "K", NULL,
-     "Standard deviation of this temperature. This key requires truss.expansion_per_K"},
+     "The key `sigma_temperature_K` sets the standard deviation of the temperature of the selected members. The key "
+     "`sigma_temperature_K` requires the key `truss.expansion_per_K`"},
 };
 
 #undef IN
@@ -428,28 +560,36 @@ static const hf_field truss_heat_field[] = {
     }
 const hf_list hf_list_table[] = {
     LIST("optimize.variables", optimize.n_variable_row, optimize.variable_row, HF_DESIGN_ROWS_MAX, variable_field, 0,
-         "Design variables. Without rows, the pretensions of the boundary cables vary within range_N, and rule "
-         "determines how they act"),
+         "Each row of the list `optimize.variables` defines design variables. If the list `optimize.variables` is "
+         "empty, the pretensions of the boundary cables vary within `range_N`. If the list is empty, the key "
+         "`optimize.rule` determines how the pretensions act on the cables"),
     LIST("optimize.objective", optimize.n_term, optimize.term, HF_DESIGN_ROWS_MAX, objective_field, 0,
-         "Objectives, which the merit of a design combines. Without rows, the objective is psi"),
+         "Each row of the list `optimize.objective` defines one objective. The merit of a design combines all "
+         "objectives. If the list `optimize.objective` is empty, the objective is psi"),
     /* A row of optimize.front has the keys of a row of optimize.objective without the last one, weight. */
     LIST("optimize.front", optimize.n_front, optimize.front, HF_FRONT_OBJECTIVES_MAX, objective_field, 1,
-         "Two or three objectives of a Pareto front. The run then finds the front instead of one design. No other "
-         "design dominates a design of the front"),
+         "The list `optimize.front` defines the two or three objectives of a Pareto front. If the list "
+         "`optimize.front` has rows, the run computes a Pareto front instead of one design. No other design dominates "
+         "a design of the Pareto front"),
     LIST("optimize.limits", optimize.n_limit, optimize.limit, HF_DESIGN_ROWS_MAX, limit_field, 0,
-         "Limits that a design must satisfy. Without rows, there are none"),
+         "Each row of the list `optimize.limits` defines a limit that all designs must satisfy"),
     LIST("cables", built.n_cable, built.cable, HF_MATERIAL_ROWS_MAX, cable_field, 0,
-         "Material of the cables of the as-built net. A later row replaces the values of an earlier row"),
+         "Each row of the list `cables` sets the material of cables of the as-built net. If several rows set the same "
+         "property of a cable, the last row applies"),
     LIST("nodes", built.n_node, built.node, HF_MATERIAL_ROWS_MAX, node_field, 0,
-         "Mass of the joints of the as-built net. A later row replaces an earlier row"),
+         "Each row of the list `nodes` sets the mass of the joints of the as-built net. If several rows set the mass "
+         "of a node, the last row applies"),
     LIST("load_cases", built.n_load_case, built.load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field, 0,
-         "Up to 16 load cases of the as-built net: temperatures, gravity, forces and displacements of supports. "
-         "Without rows, hifdm computes none"),
+         "The list `load_cases` defines up to 16 load cases of the as-built net. A load case can include temperatures, "
+         "gravity, forces and displacements of supports. If the list `load_cases` is empty, hifdm computes no load "
+         "cases"),
     LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field, 0,
-         "Requirements for each as-built net. Without rows, there are no requirements and no yield"),
+         "Each row of the list `tolerance.require` defines a requirement for each as-built net. If the list "
+         "`tolerance.require` is empty, hifdm computes no yield"),
     LIST("tolerance.truss", tolerance.n_truss, tolerance.truss, HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, 0,
-         "Temperatures of the truss that vary independently. The temperatures of rows with the same members add up. "
-         "Without rows, the temperature of the truss does not vary"),
+         "Each row of the list `tolerance.truss` defines an independent random temperature of the truss. If several "
+         "rows apply to the same members, hifdm adds their temperatures. If the list `tolerance.truss` is empty, the "
+         "temperature of the truss does not vary"),
 };
 #undef LIST
 const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
