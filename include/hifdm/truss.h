@@ -147,8 +147,8 @@ typedef struct {
       "The key `depth_m` sets the distance between the front chords and the rear chords, along the normal of the "     \
       "surface")                                                                                                       \
     X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL,                                                       \
-      "The key `main_every` sets the interval n of the main units. Every n-th module border along y, counted from "    \
-      "both edges, has main units (`mbug`). All other module borders along y have assistant units (`abug`)")           \
+      "The key `main_every` sets the interval between module borders with main units (`mbug`), along y. hifdm counts " \
+      "the module borders from both edges. Module borders along y without main units have assistant units (`abug`)")   \
     X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL,                                        \
       "The key `E_Pa` sets Young's modulus of the tubes")                                                              \
     X(section, G_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,                                          \
@@ -164,15 +164,16 @@ typedef struct {
       "The key `theory` selects the beam theory. The theory `euler_bernoulli` neglects shear deformation. The theory " \
       "`timoshenko` uses half the cross-section area as the shear area, as for a thin round tube")                     \
     X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word,                                                \
-      "The key `joints` selects the joints of the members. Rigid joints clamp a member to its nodes. Pinned joints "   \
-      "transmit only axial force")                                                                                     \
+      "The key `joints` selects the kind of joints between members and nodes. Rigid joints clamp a member to its "     \
+      "nodes. Pinned joints transmit only axial force")                                                                \
     X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", HF_WORDS("central_module", "central_module_rear"), \
-      "The key `supports` selects the nodes that the spacecraft holds. The value `central_module` selects all "        \
-      "corners of the central module. The value `central_module_rear` selects only the rear corners of the central "   \
-      "module")                                                                                                        \
+      "The key `supports` selects the nodes that the spacecraft holds. The value `central_module` of the key "         \
+      "`supports` selects all corners of the central module. The value `central_module_rear` of the key `supports` "   \
+      "selects only the rear corners of the central module")                                                           \
     X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", HF_WORDS("all", "translations"),                          \
-      "The key `support_dofs` selects the degrees of freedom that are fixed at the held nodes. The value `all` "       \
-      "selects displacements and rotations. The value `translations` selects only displacements")
+      "The key `support_dofs` selects the degrees of freedom that are fixed at the nodes that the spacecraft holds. "  \
+      "The value `all` of the key `support_dofs` selects displacements and rotations. The value `translations` of "    \
+      "the key `support_dofs` selects only displacements")
 
 #define HF_TRUSS_UNIT_KEYS(X, section, diameter, panel_number)                                                         \
     X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL,                                    \
@@ -187,22 +188,23 @@ typedef struct {
 /* Keys of the section truss.ring and of each of its tubes. The macro argument is the default of the diameter. */
 #define HF_RING_KEYS(X, section)                                                                                       \
     X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
-      "The key `height_m` sets the distance of the rear ring below the front ring, along z. The default distance is "  \
-      "the value of `rear_distance_m` of the net")                                                                     \
+      "The key `height_m` sets the distance of the rear ring below the front ring, along z. By default, the distance " \
+      "between the rings is the value of `rear_distance_m` of the net")                                                \
     X(section, cells_per_bay, HF_FIELD_INT, 1, 6000, "1", "", NULL,                                                    \
       "The key `cells_per_bay` sets the number of net cells along the rim in one bay of the ring. Each bay has a "     \
       "vertical at both ends. Between the verticals, the longerons change direction at the supports of the net")       \
     X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                          \
       "The key `bracing` selects the diagonals of each bay. Single diagonals alternate in direction from bay to bay")  \
     X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", HF_WORDS("bay", "vertical", "three_verticals"),                   \
-      "The key `held` selects the joints that the spacecraft or the ground holds. The value `bay` selects the four "   \
-      "joints of a bay. The value `vertical` selects the two joints of a vertical. The value `three_verticals` "       \
-      "selects the rear joints of three verticals at intervals of 120 degrees")                                        \
+      "The key `held` selects the joints that the spacecraft or the ground holds. The value `bay` of the key `held` "  \
+      "selects the four joints of a bay. The value `vertical` of the key `held` selects the two joints of a "          \
+      "vertical. The value `three_verticals` of the key `held` selects the rear joints of three verticals at "         \
+      "intervals of 120 degrees")                                                                                      \
     X(section, held_at_deg, HF_FIELD_DOUBLE, 0, 360, "180", "deg", NULL,                                               \
       "The key `held_at_deg` sets the angle of the held bay or vertical about the centre of the aperture, from x "     \
       "towards y. If three verticals are held, the key `held_at_deg` sets the angle of the first vertical. hifdm "     \
-      "selects the bay or vertical nearest to the angle `held_at_deg`. For an offset reflector, the angle of 180 "     \
-      "degrees is on the side of the axis")
+      "selects the bay or vertical nearest to the angle `held_at_deg`. For an offset reflector, the joints at 180 "    \
+      "degrees are on the side of the axis of the paraboloid")
 
 #define HF_TUBE_KEYS(X, section, diameter)                                                                             \
     X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL,                                    \
