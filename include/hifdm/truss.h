@@ -148,7 +148,8 @@ typedef struct {
       "surface")                                                                                                       \
     X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL,                                                       \
       "The key `main_every` sets the interval between module borders with main units (`mbug`), along y. hifdm counts " \
-      "the module borders from both edges. Module borders along y without main units have assistant units (`abug`)")   \
+      "the module borders from both edges of the net. Module borders along y without main units have assistant units " \
+      "(`abug`)")                                                                                                      \
     X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL,                                        \
       "The key `E_Pa` sets Young's modulus of the tubes")                                                              \
     X(section, G_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,                                          \
@@ -183,7 +184,7 @@ typedef struct {
     X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL,                                                  \
       "The key `panels` sets the number of panels along one module")                                                   \
     X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                        \
-      "The key `diagonals` selects the diagonals of each panel")
+      "The key `diagonals` selects no diagonals, single diagonals or crossed diagonals for the panels")
 
 /* Keys of the section truss.ring and of each of its tubes. The macro argument is the default of the diameter. */
 #define HF_RING_KEYS(X, section)                                                                                       \
@@ -191,10 +192,12 @@ typedef struct {
       "The key `height_m` sets the distance of the rear ring below the front ring, along z. By default, the distance " \
       "between the rings is the value of `rear_distance_m` of the net")                                                \
     X(section, cells_per_bay, HF_FIELD_INT, 1, 6000, "1", "", NULL,                                                    \
-      "The key `cells_per_bay` sets the number of net cells along the rim in one bay of the ring. Each bay has a "     \
-      "vertical at both ends. Between the verticals, the longerons change direction at the supports of the net")       \
+      "The key `cells_per_bay` sets the number of net cells along the rim in one bay of the ring. Each bay of the "    \
+      "ring has a vertical at each end. Between the verticals, the longerons change direction at the supports of the " \
+      "net")                                                                                                           \
     X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                          \
-      "The key `bracing` selects the diagonals of each bay. Single diagonals alternate in direction from bay to bay")  \
+      "The key `bracing` selects no diagonals, single diagonals or crossed diagonals for the bays. Single diagonals "  \
+      "alternate in direction from bay to bay")                                                                        \
     X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", HF_WORDS("bay", "vertical", "three_verticals"),                   \
       "The key `held` selects the joints that the spacecraft or the ground holds. The value `bay` of the key `held` "  \
       "selects the four joints of a bay. The value `vertical` of the key `held` selects the two joints of a "          \

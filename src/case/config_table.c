@@ -115,8 +115,9 @@ const hf_field hf_field_table[] = {
      "The key `strip_width_m` sets the width of flat strips along y for the faceting error. For a net over a parabolic "
      "cylinder, the default strip width is the width of a cell"},
     {"surface.mesh_tension_N_per_m", HF_FIELD_DOUBLE, AT(surface.mesh_tension_N_per_m), 0, 1e6, "0", "N/m", NULL,
-     "The key `mesh_tension_N_per_m` sets the tension of the mesh, which is equal in all directions. The tension of "
-     "the mesh bends the cables and curves the facets into pillows. If the mesh tension is 0 N/m, the facets are flat"},
+     "The key `mesh_tension_N_per_m` sets the tension of the mesh. The mesh tension is equal in all directions. The "
+     "tension of the mesh bends the cables and curves the facets into pillows. If the mesh tension is 0 N/m, the "
+     "facets are flat"},
     {"surface.frequencies_Hz", HF_FIELD_DOUBLE_LIST, AT(surface.frequencies_Hz), HF_ABOVE_ZERO, 1e15, "[]", "Hz", NULL,
      "The key `frequencies_Hz` lists up to 32 frequencies at which hifdm reports the gain loss by Ruze's formula"},
 
@@ -138,10 +139,10 @@ const hf_field hf_field_table[] = {
      "The key `aim_m` sets the point at which the feed is aimed. By default, the feed is aimed at the centre of the "
      "aperture, on the target surface"},
     {"surface.pattern.feed.cos_power", HF_FIELD_DOUBLE, AT(surface.pattern.cos_power), 0, 1e4, "", "", NULL,
-     "The key `cos_power` sets the exponent q of the feed. The field of the feed is proportional to cos^q of the angle "
-     "from the feed axis. The power of the feed is proportional to cos^(2q) of the angle from the feed axis. With the "
-     "default exponent, the power at the edge of the facets is 10 dB below the power on the axis. For the default "
-     "exponent, hifdm neglects the differences in distance from the feed"},
+     "The key `cos_power` sets the exponent q of the feed pattern. The field of the feed is proportional to cos^q of "
+     "the angle from the feed axis. The power of the feed is proportional to cos^(2q) of the angle from the feed axis. "
+     "With the default exponent, the power at the edge of the facets is 10 dB below the power on the axis. For the "
+     "default exponent, hifdm neglects the differences in distance from the feed"},
     {"surface.pattern.feed.polarisation", HF_FIELD_WORD, AT(surface.pattern.polarisation), 0, 0, "x", "",
      HF_WORDS("x", "y"),
      "The key `polarisation` sets the direction of the electric field on the feed axis. For a line source, the value "
@@ -163,7 +164,7 @@ const hf_field hf_field_table[] = {
      "the computed tensions are as close to the laws as equilibrium allows. For cables with the laws `length` and "
      "`elastic`, the computed tensions are as uniform as possible"},
     {"form.stop", HF_FIELD_WORD, AT(form.stop), 0, 0, "residual", "", hf_stop_rule_word,
-     "The key `stop` selects the stopping rule of the iteration. With the rule `residual`, the iteration stops when "
+     "The key `stop` selects the stopping rule of the form-finding. With the rule `residual`, the iteration stops when "
      "equilibrium and cable lengths are within their tolerances. With the rule `rms_change`, the iteration stops when "
      "psi changes by less than `rms_tolerance_m`. The rule `rms_change` stops the iteration before equilibrium. Use "
      "the rule `rms_change` only to reproduce the paper"},
@@ -176,8 +177,8 @@ const hf_field hf_field_table[] = {
      "The key `rms_tolerance_m` sets the maximum change of psi between two iterations for the stopping rule "
      "`rms_change`. For the change of psi, the paper uses a tolerance of 0.001 mm"},
     {"form.max_iterations", HF_FIELD_INT, AT(form.max_iterations), 1, 10000000, "100000", "", NULL,
-     "The key `max_iterations` sets the maximum number of iterations. If the form-finding needs more than "
-     "`max_iterations` iterations, the shape has not converged"},
+     "The key `max_iterations` sets the maximum number of iterations of the form-finding. If the form-finding needs "
+     "more than `max_iterations` iterations, the shape has not converged"},
     {"form.collapse_ratio", HF_FIELD_DOUBLE, AT(form.collapse_ratio), 1e-12, 0.5, "1e-3", "", NULL,
      "The key `collapse_ratio` sets the length ratio below which a cable with the law `tension` has collapsed. The "
      "length ratio is the length of the cable divided by its length at the target positions"},
@@ -233,9 +234,10 @@ const hf_field hf_field_table[] = {
      "the best design of the genetic algorithm by the Levenberg-Marquardt method. If the method is `ga` and the key "
      "`refine` requests a refinement, hifdm reports the refined design only for comparison"},
     {"optimize.refine", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", HF_WORDS("auto", "true", "false"),
-     "The key `refine` selects whether hifdm refines the best design of the genetic algorithm for comparison. For the "
-     "comparison, hifdm uses the Levenberg-Marquardt method. If the key `refine` is `auto`, hifdm refines the design "
-     "only if this takes less than about 0.1 s, or less than a tenth of the time of the genetic algorithm"},
+     "The key `refine` selects whether hifdm refines the best design of the genetic algorithm for comparison. hifdm "
+     "refines the best design by the Levenberg-Marquardt method. If the key `refine` is `auto`, hifdm refines the "
+     "design only if the refinement takes less than about 0.1 s, or less than a tenth of the time of the genetic "
+     "algorithm"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
      "The key `rule` selects how the pretension T' of a design acts on a boundary cable. With the rule "
      "`force_density`, the cable has the force density T'/L*, where L* is the target length. With the rule "
@@ -287,9 +289,9 @@ const hf_field hf_field_table[] = {
      "replace worse individuals. With the variation `chain`, a crossover mixes two parents chain by chain. Children of "
      "the variation `chain` replace the whole generation"},
     {"optimize.elites", HF_FIELD_INT, AT(optimize.elites), 1, 100000, "1", "", NULL,
-     "The key `elites` sets the number of elite individuals, which are the best individuals of a generation. If the "
-     "variation is `chain`, the elite individuals survive unchanged. If the variation is `difference`, the crossovers "
-     "start from the elite individuals"},
+     "The key `elites` sets the number of elite individuals. Elite individuals are the best individuals of a "
+     "generation. If the variation is `chain`, the elite individuals survive unchanged. If the variation is "
+     "`difference`, the crossovers start from the elite individuals"},
     {"optimize.stagnation_tolerance_m", HF_FIELD_DOUBLE, AT(optimize.stagnation_tolerance_m), 0, BIG, "1e-6", "m", NULL,
      "The key `stagnation_tolerance_m` sets the stagnation tolerance. If the best psi or merit improves by less than "
      "the stagnation tolerance in `stagnation_generations` generations, the genetic algorithm stops"},
@@ -329,8 +331,8 @@ const hf_field hf_field_table[] = {
      "sample have the same temperature error. The key `sigma_temperature_K` requires the key `expansion_per_K` in the "
      "list `cables`. For temperature errors of the truss, use the list `tolerance.truss`"},
     {"tolerance.distribution", HF_FIELD_WORD, AT(tolerance.distribution), 0, 0, "normal", "", hf_distribution_word,
-     "The key `distribution` selects the distribution of each error. A uniform distribution extends from -1.73 to "
-     "+1.73 standard deviations"},
+     "The key `distribution` selects the distribution of the random errors. A uniform distribution extends from -1.73 "
+     "to +1.73 standard deviations"},
     {"tolerance.batch", HF_FIELD_DOUBLE, AT(tolerance.batch), 0, 1, "0", "", NULL,
      "The key `batch` sets the correlation of errors among the cables of one spool. The correlation applies separately "
      "to relative errors of cut length and to relative errors of stiffness. Each set of cables is one spool. If a "
@@ -439,9 +441,9 @@ static const hf_field objective_field[] = {
      "The key `mass_kg_per_m` sets the mass of the cables per metre. The quantity `mass` requires the key "
      "`mass_kg_per_m`"},
     {"along", HF_FIELD_WORD, IN(objective, along), 0, 0, "normal", "", HF_WORDS("normal", "half_path"),
-     "The key `along` selects the distance for the quantities `surface` and `facets`. The value `normal` of the key "
-     "`along` selects the distance along the normal of the target surface. The value `half_path` of the key `along` "
-     "selects half the change in the path length of a ray"},
+     "The key `along` selects how hifdm measures the distance for the quantities `surface` and `facets`. The value "
+     "`normal` of the key `along` selects the distance along the normal of the target surface. The value `half_path` "
+     "of the key `along` selects half the change in the path length of a ray"},
     {"fit", HF_FIELD_WORD, IN(objective, fit), 0, 0, "none", "", HF_WORDS("none", "best"),
      "The key `fit` selects the reference surface for the quantities `surface` and `facets`. The value `none` of the "
      "key `fit` selects the target surface itself. The value `best` of the key `fit` selects the best fit of the "
@@ -460,9 +462,9 @@ static const hf_field objective_field[] = {
      "The key `take` selects how hifdm combines the values of all load cases or samples. The value `mean` of the key "
      "`take` selects the RMS of the values. The value `worst` of the key `take` selects the maximum of the values"},
     {"quantile", HF_FIELD_DOUBLE, IN(objective, quantile), HF_ABOVE_ZERO, 1, "", "", NULL,
-     "The key `quantile` replaces the key `take` by a quantile of the values of all samples. The value of the key "
-     "`quantile` is the fraction of samples that do not exceed the quantile. Only the optimisation method `ga` "
-     "supports the key `quantile`"},
+     "The key `quantile` replaces the key `take` by a quantile over all samples. The value of the key `quantile` is "
+     "the fraction of samples that do not exceed the quantile. Only the optimisation method `ga` supports the key "
+     "`quantile`"},
     {"weight", HF_FIELD_DOUBLE, IN(objective, weight), HF_ABOVE_ZERO, BIG, "1", "", NULL,
      "The key `weight` sets the weight of an objective in the merit of a design. The merit is the square root of the "
      "sum of (weight * value)^2 over all objectives"},
@@ -471,8 +473,8 @@ static const hf_field objective_field[] = {
 _Static_assert(IN(limit, upper) == IN(limit, lower) + sizeof(double), "bounds are bounds");
 static const hf_field limit_field[] = {
     {"figure", HF_FIELD_WORD, IN(limit, figure), 0, 0, NULL, "", hf_limit_word,
-     "The key `figure` selects the quantity that hifdm limits. The limit `tension` applies to the tension of each "
-     "cable of the set (N). The limit `ratio` applies to the maximum tension of the set divided by its minimum "
+     "The key `figure` selects the quantity to which the limit applies. The limit `tension` applies to the tension of "
+     "each cable of the set (N). The limit `ratio` applies to the maximum tension of the set divided by its minimum "
      "tension. The limit `deflection` applies to the deflection of the truss at each attachment (m)"},
     {"set", HF_FIELD_TEXT, IN(limit, set), 1, HF_SET_NAME_SIZE, "", "", NULL,
      "The key `set` selects the cables of the limits `tension` and `ratio`. Without the key `set`, the limit applies "
@@ -494,8 +496,8 @@ static const hf_field cable_field[] = {
 
 static const hf_field node_field[] = {
     {"role", HF_FIELD_WORD, IN(node, role), 0, 0, "all", "", hf_nodes_word,
-     "The key `role` selects the nodes to which the row applies. The value of the key `role` is a role of nodes, or "
-     "`all`"},
+     "The key `role` selects the nodes to which the row applies. The value of the key `role` is `all`, or one of the "
+     "node roles `support`, `inner` and `edge`"},
     {"mass_kg", HF_FIELD_DOUBLE, IN(node, mass_kg), 0, 1e6, NULL, "kg", NULL,
      "The key `mass_kg` sets the mass of each node"},
 };
@@ -525,7 +527,7 @@ static const hf_field load_case_field[] = {
      "The key `direction` sets the direction of gravity as a vector of any length. The default direction of gravity is "
      "[0, 0, -1]"},
     {"force_N", HF_FIELD_VECTOR, IN(load_case, force_N), -1e12, 1e12, "", "N", NULL,
-     "The key `force_N` sets the force on each node with the selected role"},
+     "The key `force_N` sets the force on each node that the key `role` selects"},
     {"role", HF_FIELD_WORD, IN(load_case, role), 0, 0, "all", "", hf_nodes_word,
      "The key `role` selects the nodes on which the force `force_N` acts"},
     {"support_displacement_m", HF_FIELD_VECTOR, IN(load_case, support_displacement_m), -1e6, 1e6, "", "m", NULL,
@@ -539,11 +541,11 @@ static const hf_field load_case_field[] = {
 
 static const hf_field require_field[] = {
     {"measure", HF_FIELD_WORD, IN(require, measure), 0, 0, NULL, "", hf_tolerance_measure_word,
-     "The key `measure` selects a measure of each as-built net. Measures of the surface require the section `surface`. "
-     "Measures of the facets require a net with facets. Losses by Ruze's formula have names that end in "
-     "`gain_loss_dB`. Losses by Ruze's formula require the key `surface.frequencies_Hz`. The measure `pattern_loss_dB` "
-     "requires the section `surface.pattern`. hifdm computes measures with `fit_` in their name after the best fit. "
-     "The best fit describes a reflector that has been pointed and focused again"},
+     "The key `measure` selects the measure of the as-built net that the requirement limits. Measures of the surface "
+     "require the section `surface`. Measures of the facets require a net with facets. Losses by Ruze's formula have "
+     "names that end in `gain_loss_dB`. Losses by Ruze's formula require the key `surface.frequencies_Hz`. The measure "
+     "`pattern_loss_dB` requires the section `surface.pattern`. hifdm computes measures with `fit_` in their name "
+     "after the best fit. The best fit describes a reflector that has been pointed and focused again"},
     {"at_most", HF_FIELD_DOUBLE, IN(require, at_most), -BIG, BIG, "", "", NULL,
      "The key `at_most` sets the maximum allowed value of the measure"},
     {"at_least", HF_FIELD_DOUBLE, IN(require, at_least), -BIG, BIG, "", "", NULL,
