@@ -190,8 +190,8 @@ const hf_field hf_field_table[] = {
      "as-built nets, hifdm always uses its own factorisation"},
 
     {"coupling.tof_m", HF_FIELD_DOUBLE, AT(form.coupling.tof_m), HF_ABOVE_ZERO, BIG, "1e-6", "m", NULL,
-     "The key `tof_m` sets the tolerance of the coupling. The coupling has converged when each attachment moves by at "
-     "most `tof_m` in one iteration. For the coupling, the paper uses a tolerance of 1e-3 m"},
+     "The key `tof_m` sets the tolerance of the coupling. The coupling has converged when no attachment moves farther "
+     "than the tolerance in one iteration. For the coupling, the paper uses a tolerance of 1e-3 m"},
     {"coupling.scheme", HF_FIELD_WORD, AT(form.coupling.scheme), 0, 0, "auto", "", hf_coupling_scheme_word,
      "The key `scheme` selects the coupling scheme. The scheme `plain` is the iteration of the paper. The scheme "
      "`accelerated` adds Anderson acceleration to the iteration of the paper. Anderson acceleration reduces the number "
@@ -235,9 +235,9 @@ const hf_field hf_field_table[] = {
      "`refine` requests a refinement, hifdm reports the refined design only for comparison"},
     {"optimize.refine", HF_FIELD_WORD, AT(optimize.refine), 0, 0, "auto", "", HF_WORDS("auto", "true", "false"),
      "The key `refine` selects whether hifdm refines the best design of the genetic algorithm for comparison. hifdm "
-     "refines the best design by the Levenberg-Marquardt method. If the key `refine` is `auto`, hifdm refines the "
-     "design only if the refinement takes less than about 0.1 s, or less than a tenth of the time of the genetic "
-     "algorithm"},
+     "refines the best design by the Levenberg-Marquardt method. If the key `refine` is `auto`, hifdm requires that "
+     "the refinement takes less than a tenth of the time of the genetic algorithm. A refinement that takes less than "
+     "about a tenth of a second is always allowed"},
     {"optimize.rule", HF_FIELD_WORD, AT(optimize.rule), 0, 0, "force_density", "", hf_rule_word,
      "The key `rule` selects how the pretension T' of a design acts on a boundary cable. With the rule "
      "`force_density`, the cable has the force density T'/L*, where L* is the target length. With the rule "
