@@ -3,10 +3,11 @@
  *
  * The names and words of the laws are stable because files contain them.
  *
- * A new law needs one row of HF_LAW_LIST and one case in each function below. The compiler reports a missing case.
- * Solvers test flags and call these functions, so a new law does not change them. A kernel may have its own formulas
- * for the laws. A set of flags states which laws such a kernel can solve (hf_law_is_served). If a net has any other
- * law, another method solves the net.
+ * A new law needs one row of HF_LAW_LIST and one case in each function below. The compiler reports a function that
+ * lacks the case of a law. Solvers use only the flags and functions of this header. A new law therefore requires no
+ * change in a solver. A kernel may have its own formulas for the laws. Each kernel with its own formulas has a set of
+ * flags that defines the laws that the kernel can solve (hf_law_is_served). If a net contains a law that the kernel
+ * cannot solve, another method solves the net.
  *
  * Lengths are in m, tensions in N and force densities in N/m. The order of the floating-point operations must not
  * change because it determines the last bits of stored data sets. */
@@ -18,7 +19,7 @@
 
 HF_API_BEGIN
 
-/* Properties of a law that solvers may use. */
+/* These flags describe the properties of a law that solvers may use. */
 enum {
     HF_LAW_ITERATES = 1,      /* the force density depends on the shape, so one linear solve is not enough */
     HF_LAW_IS_CONVEX = 2,     /* the potential is convex under tension */
@@ -32,8 +33,9 @@ enum {
     HF_LAW_MAY_PUSH = 128   /* the target value may be below zero; the cable is then a strut */
 };
 
-/* Each law is one row X(name, word, target, unit of target, flags). Files contain the words in the order of the rows.
- * `target` is the name of the target value in messages. If `target` is NULL, a cable of this law may have no value.
+/* Each row X(name, word, target, unit of target, flags) defines one law. Files store the words in the order of the
+ * rows. `target` is the name of the target value in messages. If `target` is NULL, a cable of this law may have no
+ * value.
  *
  *   tension         T = T*, Eq. 7
  *   length          l = L*, Eq. 8
@@ -61,7 +63,7 @@ extern const char *const hf_law_word[HF_N_LAW];        /* "tension", "length", "
 extern const char *const hf_law_target_name[HF_N_LAW]; /* names of the target values; NULL: the value is optional */
 extern const char *const hf_law_target_unit[HF_N_LAW]; /* units of the target values */
 
-/* The values of one cable that its law uses. */
+/* Contains the values of one cable that its law uses. */
 typedef struct {
     hf_law law;                /* law in force */
     double target;             /* target value by law: T* (N), L* (m), q (N/m) or l0 (m) */
@@ -78,16 +80,16 @@ static inline bool hf_law_has(hf_law law, unsigned flags)
     return (flags_of[law] & flags) != 0;
 }
 
-/* Returns true if a kernel for laws with the flags `served` can solve this law. A kernel can solve a law if the law has
- * no other flag than those in `served`. */
+/* Returns true if a kernel for laws with the flags `served` can solve this law. A kernel can solve a law if `served`
+ * contains all flags of the law. */
 static inline bool hf_law_is_served(hf_law law, unsigned served)
 {
     return !hf_law_has(law, ~served);
 }
 
-/* Returns the target value of a cable for which none was given. For law length it is the length between the target
- * positions, length_at_target_m. For the other laws the result is NaN, because they have no default or use the
- * pretension. */
+/* Returns the default target value of a cable without a given target value. For the law `length`, the default is the
+ * distance length_at_target_m between the target positions of the ends of the cable. For all other laws, the function
+ * returns NaN because these laws have no default or use the pretension. */
 static inline double hf_law_default_target(hf_law law, double length_at_target_m)
 {
     switch (law) {
@@ -101,17 +103,17 @@ static inline double hf_law_default_target(hf_law law, double length_at_target_m
     return (double)NAN;
 }
 
-/* Size of the text of hf_law_target_fault in bytes. */
+/* Defines the size in bytes of the buffer for hf_law_target_fault. */
 #define HF_LAW_FAULT_SIZE 160
 
-/* Checks the target value of a cable. The value is NaN if the user gave none. The argument length_at_target_m is the
- * distance between the target positions of the ends of the cable, in m. Returns NULL if the value is valid. If the
- * value is invalid, writes the fault into `text` and returns `text`. */
+/* Checks the target value of a cable. If the user gave no target value, the argument `target` is NaN. The argument
+ * length_at_target_m is the distance between the target positions of the ends of the cable, in m. Returns NULL if the
+ * value is valid. If the value is invalid, the function writes the fault into `text` and returns `text`. */
 const char *hf_law_target_fault(hf_law law, double target, double length_at_target_m, char text[HF_LAW_FAULT_SIZE]);
 
-/* Returns the length in m that a law with a multiplier requires at this tension. Returns NaN for other laws. The length
- * as a function of the tension needs no special case for stiff cables. In the limit of infinite EA, the law elastic
- * becomes the law length (METHOD M3). */
+/* Returns the length in m that a law with a multiplier requires at this tension. Returns NaN for other laws. Expressed
+ * as a function of the tension, the length needs no special case for stiff cables. In the limit of infinite EA, the law
+ * elastic becomes the law length (METHOD M3). */
 static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
 {
     switch (c.law) {
@@ -126,7 +128,7 @@ static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
     return (double)NAN;
 }
 
-/* Returns the tension in N of a cable of this length. Returns NaN for a rigid law, for which the length does not
+/* Returns the tension in N of a cable with the length length_m. Returns NaN for a rigid law because its length does not
  * determine the tension. */
 static inline double hf_law_tension_N(hf_law_cable c, double length_m)
 {
@@ -144,8 +146,8 @@ static inline double hf_law_tension_N(hf_law_cable c, double length_m)
 }
 
 /* Returns the unstressed length in m of a cable that has this tension at this length (METHOD M32). For a slack cable
- * whose law has a multiplier, this is the length that the law gives at zero tension. The member c.EA_N is required for
- * every law. */
+ * whose law has a multiplier, the function returns the length that the law requires at zero tension. The member c.EA_N
+ * is required for every law. */
 static inline double hf_law_cut_m(hf_law_cable c, double length_m, double tension_N, bool is_slack)
 {
     if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_required_length_m(c, 0);
@@ -170,22 +172,22 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
 
 /* ---- functions that follow from the flags ---- */
 
-/* Returns the force density in N/m at this length. The force density follows from the tension if the law gives a
- * tension. Otherwise it is q_N_per_m. */
+/* Returns the force density in N/m at this length. If the law determines the tension, the force density is the tension
+ * divided by the length. Otherwise it is q_N_per_m. */
 static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, double q_N_per_m)
 {
     return hf_law_has(c.law, HF_LAW_GIVES_TENSION) ? c.target / length_m : q_N_per_m;
 }
 
-/* Minimum force density, in N/m, that Eq. 8 gives to a slack cable. This minimum is far below all forces, even in nets
- * with pretensions of 1e-300 N, for which 1e-100 would be too large. The minimum is large enough to determine the
- * position of a node that only slack cables hold. */
+/* Eq. 8 assigns at least this force density, in N/m, to a slack cable. This minimum is far below all forces, even in
+ * nets with pretensions of 1e-300 N. A minimum of 1e-100 would be too large for such nets. The minimum force density is
+ * large enough to determine the position of a node that only slack cables hold. */
 #define HF_LAW_MIN_Q_N_PER_M 1e-305
 
-/* Returns the next force density of the fixed-point iteration in N/m. Eq. 7 multiplies q by the ratio of the required
- * tension to the present tension. Because T = q l, the result is the required tension divided by l. Eq. 8 multiplies q
- * by the ratio of the present length to the required length. The required length of an elastic cable increases with the
- * tension. */
+/* Returns the next force density of the fixed-point iteration in N/m. Eq. 7 multiplies the force density q by the ratio
+ * of the required tension to the present tension. Because T = q l, the result of Eq. 7 is the required tension divided
+ * by the length l. Eq. 8 multiplies the force density q by the ratio of the present length to the required length. The
+ * required length of an elastic cable increases with the tension. */
 static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, double tension_N, double q_N_per_m)
 {
     if (hf_law_has(c.law, HF_LAW_GIVES_TENSION)) return c.target / length_m;
@@ -194,11 +196,12 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
     return next < HF_LAW_MIN_Q_N_PER_M ? HF_LAW_MIN_Q_N_PER_M : next; /* NaN is returned unchanged */
 }
 
-/* Returns the tension in N with which an iteration begins. The tension is otherwise_N, unless the cable can go slack
- * and is taut between its target positions. A cable that can go slack and is taut there begins with its tension between
- * the target positions. The function limits this tension to a factor HF_LAW_FIRST_RANGE of otherwise_N. Without this
- * limit, a stiff cable that is barely taut would carry almost no force. A stiff cable that was cut too short would
- * carry almost all forces. */
+/* Returns the tension in N with which an iteration begins. If the cable can go slack and is taut between the target
+ * positions of its ends, the iteration begins with the tension at these positions. For all other cables, the iteration
+ * begins with the tension otherwise_N. The function limits this tension to the range from otherwise_N /
+ * HF_LAW_FIRST_RANGE to otherwise_N * HF_LAW_FIRST_RANGE. Without this limit, a stiff cable that is only just taut
+ * would carry almost no force at the beginning. Without this limit, a stiff cable that was cut too short would carry
+ * almost the entire force at the beginning. */
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {

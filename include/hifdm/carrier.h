@@ -22,18 +22,19 @@ typedef struct {
     void *block;                  /* owned memory behind the arrays */
 } hf_carrier;
 
-/* Builds the carrier from a checked truss and the checked scene of the net on this truss. Each support of the scene is
- * attached to the nearest node of the truss if the distance is at most match_tolerance_m (hf_truss_attach). The carrier
- * takes ownership of the truss, even after a failure. The function sets *truss to all zero. The frame of the carrier
- * points to the truss of the carrier, so the carrier must not be moved in memory. Returns HF_OK. On failure returns
- * HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK and adds messages. Call hf_carrier_free even after a
+/* Builds the carrier from a truss and the scene of the net on this truss. The truss and the scene must already be
+ * checked. Each support of the scene is attached to the nearest node of the truss (hf_truss_attach). The distance of
+ * the support from this node must be at most match_tolerance_m. The carrier takes ownership of the truss, even after a
+ * failure. The function sets all members of *truss to zero. The frame of the carrier contains a pointer to the truss of
+ * the carrier. Therefore, the carrier must not be moved in memory. Returns HF_OK. If the function fails, it adds
+ * messages and returns HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even after a
  * failure. */
 hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_scene *scene, hf_carrier *carrier,
                            hf_messages *messages);
 /* Frees the truss, the frame and the arrays. */
 void hf_carrier_free(hf_carrier *carrier);
 
-/* Displacements and forces of the truss in a load case. */
+/* Contains the displacements and forces of the truss in a load case. */
 typedef struct {
     double *displacement; /* [n_node][6] displacements, m and rad */
     double *reaction;     /* [n_node][6] reactions, N and N m; 0 at free degrees of freedom */
@@ -41,22 +42,24 @@ typedef struct {
     void *block;          /* owned memory behind the arrays */
 } hf_carrier_state;
 
-/* Solves the truss under forces on its attachments and under its own loads, such as temperature and weight. Either
- * force_N [n_attachment][3] or `own` may be NULL. Returns HF_OK, HF_NO_MEMORY, or HF_MECHANISM if a moment of `own`
- * acts at a node where nothing resists rotation. Call hf_carrier_state_free even after a failure. */
+/* Solves the truss under forces on its attachments and under its own loads, such as temperature and weight. Either of
+ * the arguments force_N [n_attachment][3] and `own` may be NULL. Returns HF_OK, HF_NO_MEMORY, or HF_MECHANISM if `own`
+ * has a moment at a node where nothing resists rotation. Call hf_carrier_state_free even after a failure. */
 hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, const hf_frame_load *own,
                           hf_carrier_state *state);
 
-/* Adds the weight of members and hinges under the acceleration gravity_m_per_s2 [3] to force [n_node][6], in N. Half of
- * the weight of a member acts at each end. The bending of a member under its own weight is neglected. */
+/* Adds the weight of members and hinges in N to the array force [n_node][6]. The argument gravity_m_per_s2 [3] is the
+ * gravitational acceleration. Half of the weight of a member acts at each of its ends. The function neglects the
+ * bending of members under their own weight. */
 void hf_carrier_add_weight(const hf_carrier *carrier, const double gravity_m_per_s2[3], double *force);
 
-/* Returns the order of magnitude, in m, of the errors of linear theory in the positions of the attachments. A member of
- * length r that rotates by an angle a moves its end by u = r sin a along the tangent. Perpendicular to the tangent, the
- * end moves by r (1 - cos a), about u a/2. Linear theory neglects this displacement. In the estimate, a is the maximum
- * rotation of a member and u is the maximum displacement of an attachment. The function sets *move_m to u. The function
- * sets *span_m to the maximum distance of another attachment from the first one. If the state is all zero, the return
- * value, *move_m and *span_m are 0. */
+/* Returns the order of magnitude, in m, of the errors of linear theory in the positions of the attachments. If a member
+ * of length r rotates by an angle a, the end of the member moves by u = r sin a along the tangent. Perpendicular to the
+ * tangent, the end of the member moves by r (1 - cos a), which is about u a/2. Linear theory neglects this
+ * displacement. In this estimate, the angle a is the maximum rotation of a member. The distance u is the maximum
+ * displacement of an attachment. The function sets *move_m to the displacement u. The function sets *span_m to the
+ * maximum distance between the first attachment and any other attachment. If all displacements of the state are zero,
+ * the return value, *move_m and *span_m are 0. */
 double hf_carrier_second_order_m(const hf_carrier *carrier, const hf_carrier_state *state, double *move_m,
                                  double *span_m);
 

@@ -8,9 +8,9 @@
  *   hf_config_surface, _material, _load_cases   hf_case and scene -> target surface, material, load cases
  *   hf_config_truss, hf_config_carrier                        hf_case and scene -> truss, condensed to the supports
  *
- * One table (src/case/config_table.c) holds every key with its type, range, default, unit and help. The rows for the
- * generators are in generate.h and truss.h. The loader validates case files with this table, and `hifdm schema` prints
- * the table. The table defines all defaults. */
+ * One table (src/case/config_table.c) holds every key with its type, range, default, unit and help. The headers
+ * generate.h and truss.h define the keys of the generators. The loader validates case files with this table, and `hifdm
+ * schema` prints the table. The table defines all defaults. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -25,7 +25,7 @@
 
 HF_API_BEGIN
 
-/* A case is the content of a case file with all defaults, including those of sections that the file does not have. */
+/* A case contains the values of a case file and the defaults of all missing keys and sections. */
 typedef struct {
     char path[HF_PATH_SIZE];                    /* path of the case file */
     char *text;                                 /* text of the case file without the section sweep */
@@ -60,67 +60,68 @@ typedef struct {
     char truss_nodes_path[HF_PATH_SIZE], truss_members_path[HF_PATH_SIZE]; /* the tables of an imported truss */
 } hf_case;
 
-/* Reads and validates a case file. The strings overrides [n_override] have the form "key=value" and replace values of
- * the file. If a key or word has its old name, the function accepts it as the new one and adds a warning. Returns HF_OK
- * or HF_NO_MEMORY. Returns HF_BAD_CASE if the file has faults or cannot be read. The function adds a message with
- * file:line:column for each fault. Call hf_case_free even after a failure. */
+/* Reads and validates a case file. The strings overrides [n_override] have the form "key=value". The overrides replace
+ * values of the file. If the file uses the old name of a key or word, the function accepts the old name and adds a
+ * warning. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if the file has faults or cannot be read. The function
+ * adds a message with file:line:column for each fault. Call hf_case_free even after a failure. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
-/* Reads a case from the text of a case file, in the same way as hf_config_load. The argument `path` is used in messages
- * and to resolve the paths of other files in the case. The function copies the text. */
+/* Reads a case from the text of a case file, in the same way as hf_config_load. The function uses the argument `path`
+ * in messages and to resolve the paths of other files in the case. The function copies the text. */
 hf_status hf_config_parse(const char *path, const char *text, const char *const *overrides, int n_override,
                           hf_case *settings, hf_messages *messages);
 
-/* Writes a list of the keys in which two cases differ, such as "form.stop, optimize.seed", into text[size]. The list is
- * truncated if it does not fit. Returns the number of keys that differ. */
+/* Writes a list of the keys in which two cases differ, such as "form.stop, optimize.seed", into text[size]. If the list
+ * is longer than the buffer, the function truncates the list. Returns the number of keys that differ. */
 int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t size);
 
 /* Writes the location of a key into text[size] for use in a message. Examples of locations are "case.yaml:7:3:
- * surface.kind" and "--set surface.kind". If the case does not have the key, the text is "case.yaml: surface.kind". If
- * a row lacks a key, such as "optimize.objective.0.set", the location is that of the row. Returns true if the case has
- * the key. */
+ * surface.kind" and "--set surface.kind". If the case does not contain the key, the location has no line number, as in
+ * "case.yaml: surface.kind". If the key is missing in a row, as in "optimize.objective.0.set", the function writes the
+ * location of the row. Returns true if the case has the key. */
 bool hf_config_location(const hf_case *settings, const char *key, char *text, size_t size);
 
-/* Makes the scene that the case describes and checks it (hf_scene_check). Returns HF_OK or HF_NO_MEMORY. Returns
+/* Makes and checks the scene that the case describes (hf_scene_check). Returns HF_OK or HF_NO_MEMORY. Returns
  * HF_BAD_CASE if the scene has faults or a file cannot be read. Call hf_scene_free even after a failure. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 
-/* Determines the target surface of a case with a section surface. If the case has no section surface, *surface is all
- * zero. If the case does not specify the kind of surface, the function chooses the kind that is closer to the inner
- * nodes of the scene. Returns HF_OK, or HF_BAD_CASE if the target positions of the inner nodes are not on the surface.
- * The message then contains the RMS distance for both kinds. A focal length out of proportion to the aperture causes a
- * warning, even without the section surface. */
+/* Determines the target surface of a case that has a `surface` section. If the case has no `surface` section, the
+ * function sets all members of *surface to zero. If the case does not specify the kind of surface, the function chooses
+ * the kind whose surface is closer to the inner nodes of the scene. Returns HF_OK, or HF_BAD_CASE if the target
+ * positions of the inner nodes are not on the surface. The error message contains the RMS distances of the inner nodes
+ * from both kinds of surface. If the focal length is out of proportion to the aperture, the function adds a warning.
+ * This check does not require a `surface` section. */
 hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_surface_settings *surface,
                             hf_messages *messages);
 
-/* Sets the material of cables and nodes of the scene from the rows of `cables` and `nodes`. A later row replaces the
- * values of an earlier row. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if a row matches nothing in this net.
- * Call hf_material_free even after a failure. */
+/* Sets the material of cables and nodes of the scene from the lists `cables` and `nodes` of the case. A later row
+ * replaces the values of an earlier row. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if a row matches nothing in
+ * this net. Call hf_material_free even after a failure. */
 hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_material *material,
                              hf_messages *messages);
 
 /* Checks that the truss has members in this part and that their thermal expansion is known. Returns HF_OK or
- * HF_BAD_CASE. The error message begins with `where` and ends with `other`, which suggests an alternative to the user.
- * If no member of the part expands in an imported truss, the function adds a warning. */
+ * HF_BAD_CASE. The error message begins with the text `where` and ends with the text `other`. The text `other` suggests
+ * an alternative to the user. If the truss is imported and no member of this part expands, the function adds a
+ * warning. */
 hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *truss, hf_part part, const char *where,
                                      const char *other, hf_messages *messages);
 
-/* Makes the load cases of the as-built net and their material from the rows of `load_cases`. The argument `truss` is
- * NULL if there is no truss. A case without rows of `load_cases` has no load cases. Returns HF_OK or HF_NO_MEMORY.
+/* Makes the load cases of the as-built net and their material from the list `load_cases`. If the case has no truss, the
+ * argument `truss` is NULL. A case without rows of `load_cases` has no load cases. Returns HF_OK or HF_NO_MEMORY.
  * Returns HF_BAD_CASE if a row matches nothing in this net or truss, if cables have no EA, or if a table cannot be
- * read. The function also returns HF_BAD_CASE if a part with a temperature has an unknown expansion, or if gravity acts
- * on cables of unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free even after a
- * failure. */
+ * read. Other causes of HF_BAD_CASE are a temperature of a part with unknown expansion, and gravity on cables of
+ * unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free even after a failure. */
 hf_status hf_config_load_cases(const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                                hf_load_cases *states, hf_messages *messages);
 
-/* Makes the truss of a case that has one and checks it (hf_truss_check). Returns HF_OK or HF_NO_MEMORY. Returns
- * HF_BAD_CASE if the truss has faults or a file cannot be read. Call hf_truss_free even after a failure. */
+/* Makes and checks the truss of the case (hf_truss_check). The case must have a truss. Returns HF_OK or HF_NO_MEMORY.
+ * Returns HF_BAD_CASE if the truss has faults or a file cannot be read. Call hf_truss_free even after a failure. */
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
-/* Makes the truss of the case and builds the carrier of the net from it (hf_carrier_build). Returns HF_OK, HF_BAD_CASE,
- * HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even after a failure. */
+/* Makes the truss of the case and builds the carrier of the net from this truss (hf_carrier_build). Returns HF_OK,
+ * HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even after a failure. */
 hf_status hf_config_carrier(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages);
 
 /* Frees the memory of a case. */
@@ -142,22 +143,23 @@ typedef enum {
     HF_FIELD_VECTOR       /* double[3]: along x, y, z */
 } hf_field_type;
 
-/* A key of a case file. */
+/* Describes a key of a case file. */
 typedef struct {
     const char *path;   /* name including its sections, "form.pretension_N" */
     hf_field_type type; /* type of the value */
     size_t offset;      /* offset of the member in hf_case; for a key of a row, the offset in the row */
     /* inclusive bounds; min HF_ABOVE_ZERO: the value is above 0; for a text, max is the size of the buffer */
     double min, max;
-    /* Default value as written in a case file. NULL means that the key is required if its section or row exists. The
-     * text "" means that there is no value. In a row, numbers are then NaN and bounds are open. */
+    /* This string is the default value as written in a case file. A NULL pointer means that every existing section or
+     * row must contain the key. An empty string means that the key has no value by default. In a row, a missing number
+     * is NaN, and missing bounds are infinite. */
     const char *default_value;
     const char *unit;         /* unit; "": dimensionless */
     const char *const *words; /* words of HF_FIELD_WORD by enumeration, terminated by NULL; NULL for other types */
     const char *help;         /* help of the key */
 } hf_field;
 
-/* A section of a case file. */
+/* Describes a section of a case file. */
 typedef struct {
     const char *path;      /* name, "scene.import" */
     size_t present_offset; /* offset of the bool in hf_case that states whether the section exists; SIZE_MAX: none */
@@ -176,7 +178,7 @@ typedef struct {
     const char *help;            /* help of the list */
 } hf_list;
 
-/* Words of a key that only the row of the key needs. */
+/* Creates a NULL-terminated list of words for a single row of the table. */
 #define HF_WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 #define HF_ABOVE_ZERO 1e-300 /* value of `min` for a key that must be above zero */
@@ -188,9 +190,10 @@ extern const int hf_n_section;              /* number of sections */
 extern const hf_list hf_list_table[];       /* [hf_n_list] lists of rows */
 extern const int hf_n_list;                 /* number of lists */
 
-/* Checks a value against a key of the table, such as "form.stop" or "optimize.variables.0.range". The value is written
- * as in a case file. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE with a message "<location>: <key>: <fault>". Only
- * hf_config_load checks the rules that involve several keys, and whether the row exists. */
+/* Checks a value against the rules of a key in the table. An example of a key is "optimize.variables.0.range". The
+ * string `value` has the form that it would have in a case file. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE with a
+ * message "<location>: <key>: <fault>". Only hf_config_load checks that the row exists and that the values of several
+ * keys are consistent. */
 hf_status hf_config_check_value(const char *key, const char *value, const char *location, hf_messages *messages);
 
 HF_API_END

@@ -2,8 +2,8 @@
  * Stability: stable.
  *
  * The function hf_evaluate_form finds the shape of the case itself. The function hf_evaluate finds the shape of a
- * design, which has one value for each design variable. Both functions write the shape to the workspace. They write the
- * figures of the shape to a result without pointers. Pipeline of hf_evaluate:
+ * design with one value for each design variable. The functions hf_evaluate_form and hf_evaluate write the shape to the
+ * workspace. The result, a struct without pointers, contains the properties of the shape. Pipeline of hf_evaluate:
  *
  *   hf_evaluate_prepare   values of the design variables -> laws, target values, first force densities
  *   solver                Newton's method or the paper's iteration, coupled with the truss if there is one
@@ -16,14 +16,16 @@
 
 HF_API_BEGIN
 
-/* Returns the method that form.method selects for this net. The method is HF_METHOD_NEWTON, or HF_METHOD_HIFDM for the
- * paper's iteration. The methods iterative_fdm and fdm also use the paper's iteration, but with other laws of the
- * model. The function sets *why to the reason for the selection, a constant string. The argument why may be NULL. */
+/* Returns the method that the key form.method selects for this net. The method is HF_METHOD_NEWTON or, for the paper's
+ * iteration, HF_METHOD_HIFDM. The methods `iterative_fdm` and `fdm` use the paper's iteration with other cable laws in
+ * the model. The function sets *why to a constant string that contains the reason for the selection. The argument why
+ * may be NULL. */
 hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
 
-/* Finds the shape of the case and certifies it (hf_certify). The workspace then holds the shape. Unless `history` is
- * NULL, the function records the figures of each iteration in it. Returns result->status. The status is HF_OK,
- * HF_NOT_CONVERGED, HF_INTERRUPTED if *workspace->stop was set, or the status of an ill-posed net. */
+/* Finds the shape of the case and certifies it (hf_certify). After the call, the workspace contains the shape. Unless
+ * `history` is NULL, the function records the figures of each iteration in it. Returns result->status. If
+ * *workspace->stop was set, the status is HF_INTERRUPTED. Other possible values are HF_OK, HF_NOT_CONVERGED and the
+ * statuses of ill-posed nets. */
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                            hf_history *history, hf_form_result *result);
 
@@ -33,7 +35,7 @@ hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, 
 hf_status hf_evaluate_prepared(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                                hf_history *history, hf_form_result *result);
 
-/* One row of optimize.limits, which bounds a quantity of the shape. */
+/* Describes one row of optimize.limits. The row bounds a quantity of the shape. */
 typedef struct {
     hf_limit_kind kind;  /* the quantity */
     double lower, upper; /* bounds in the unit of the quantity; an open side is infinite */
@@ -41,15 +43,15 @@ typedef struct {
     int *cable;          /* [n_cable] cables whose tensions or tension ratio are bounded */
 } hf_limit;
 
-/* The rows of optimize.limits, prepared for the model. */
+/* Contains the rows of optimize.limits, prepared for the model. */
 typedef struct {
     int n;         /* number of rows; 0: there are no limits */
     hf_limit *row; /* [n] the rows */
     void *block;   /* owned memory behind the rows */
 } hf_limits;
 
-/* Data that all designs of a run have in common. The threads of a run share these data. The pointers in this struct are
- * borrowed. */
+/* Contains the data that all designs of a run have in common. The threads of a run share these data. The struct does
+ * not own the data behind its pointers. */
 typedef struct {
     const hf_model *model;        /* the net */
     const hf_form_settings *form; /* tolerances and bounds of the form-finding */
@@ -67,7 +69,7 @@ typedef struct {
     bool by_density;
 } hf_evaluator;
 
-/* Quantity that a design variable sets, according to optimize.rule and optimize.variables. */
+/* The keys optimize.rule and optimize.variables determine the quantity that a design variable sets. */
 typedef enum {
     HF_SETS_START,   /* first force density value/divisor; the cable keeps the law of the case (rule seeded) */
     HF_SETS_TENSION, /* law tension with the target value T* = value */
@@ -80,37 +82,38 @@ typedef enum {
 hf_variable_sets hf_evaluate_sets(const hf_evaluator *evaluator, int i_variable);
 
 /* Returns true if the shape of a design does not depend on the starting point of its solver. The shape depends on the
- * starting point only under rule seeded without optimize.variables. */
+ * starting point only if the rule is `seeded` and the case has no optimize.variables. */
 bool hf_evaluate_is_unique(const hf_evaluator *evaluator);
 
-/* Returns the divisor that converts the value of design variable i_variable to a force density. The divisor is L* in m
- * for tensions and 1 for force densities. The design variable must belong to a cable. */
+/* Returns the divisor that converts the value of design variable i_variable to a force density. For a tension, the
+ * divisor is the length L* in m. For a force density, the divisor is 1. The design variable must belong to a cable. */
 double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_variable);
 
-/* Finds the shape of the design [model->n_variable] and writes it to the workspace. The array has the values of the
- * design variables. Values of design variables that belong to cables must be above 0. Returns result->status. If the
- * status is not HF_OK, the design is infeasible, and psi_m and merit are NaN. If the design has no shape
- * (hf_status_has_shape), the tension ratios and the violation are also NaN. If no taut cable holds some node of a
+/* Finds the shape of one design and writes the shape to the workspace. The array design [model->n_variable] contains
+ * the values of the design variables. Values of design variables that belong to cables must be above 0. Returns
+ * result->status. If the status is not HF_OK, the design is infeasible, and psi_m and merit are NaN. If the design has
+ * no shape (hf_status_has_shape), the tension ratios and the violation are NaN. If no taut cable holds a node of the
  * design, the status is HF_SINGULAR. If an objective of a design has no value, the status is HF_NOT_FINITE. `point` is
  * the memory of this thread for the objectives (hf_objectives_point_create). Without objectives, hf_evaluate does not
  * use `point`, and it may be NULL. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace,
                       hf_objectives_point *point, hf_form_result *result);
 
-/* Writes laws, target values and first force densities of the design [n_variable] to the workspace. The function does
- * the part of hf_evaluate before the solver. */
+/* Writes laws, target values and first force densities of the design [n_variable] to the workspace. The function
+ * performs the steps of hf_evaluate that precede the solver. */
 void hf_evaluate_prepare(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace);
-/* Returns true if hf_evaluate_judge will read the shape in the workspace. hf_evaluate_judge reads the shape for limits,
- * for objectives, or because the boundary tension ratio exceeds its maximum. */
+/* Returns true if hf_evaluate_judge will read the shape in the workspace. The function hf_evaluate_judge reads the
+ * shape to check limits, to measure objectives, or because the boundary tension ratio exceeds its maximum. */
 bool hf_evaluate_needs_shape(const hf_evaluator *evaluator, const hf_form_result *result);
-/* Applies the constraints to a shape and measures its objectives. The function does the part of hf_evaluate after the
- * solver. Sets violation, merit and status of the result. Sets figures to NaN as described at hf_evaluate. Returns
- * result->status. */
+/* Applies the constraints to a shape and measures its objectives. The function performs the steps of hf_evaluate that
+ * follow the solver. Sets violation, merit and status of the result. Sets quantities without a value to NaN as
+ * described at hf_evaluate. Returns result->status. */
 hf_status hf_evaluate_judge(const hf_evaluator *evaluator, const hf_workspace *workspace, hf_objectives_point *point,
                             hf_form_result *result);
 
-/* Returns the length L* in m by which the pretension of a boundary cable is divided. For a cable of law length, L* is
- * the prescribed length. For other cables, L* is the distance between the target positions of the ends. */
+/* Returns the length L* in m by which the pretension of a boundary cable is divided. For a cable of law length, the
+ * length L* is the prescribed length of the cable. For all other cables, the length L* is the distance between the
+ * target positions of the cable ends. */
 double hf_evaluate_design_length_m(const hf_model *model, int i_cable);
 
 HF_API_END
