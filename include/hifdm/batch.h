@@ -34,8 +34,8 @@ typedef struct {
 } hf_batch;
 
 /* Creates a batch of n_thread threads. If n_thread is 0, the batch has one thread for each available core. The batch
- * borrows the evaluator until hf_batch_free is called. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free even after a
- * failure. */
+ * borrows the evaluator until hf_batch_free is called. Returns HF_OK or HF_NO_MEMORY. Call hf_batch_free even if
+ * hf_batch_create fails. */
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
 /* Evaluates each of the n designs whose entry in pending [n] is not 0. If `pending` is NULL, the function evaluates all

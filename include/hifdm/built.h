@@ -1,5 +1,5 @@
 /* built - the as-built net: pieces of elastic cable with the lengths of a cut list (METHOD section 12).
- * Stability: internal; this header may change in any version.
+ * Stability: internal. This header may change in any version.
  *
  * Each cable is cut to the unstressed length at which it has its design tension in the design shape. The shape and the
  * tensions of the as-built net follow from its lengths, stiffness, supports and loads. Pipeline:
@@ -37,7 +37,7 @@ static inline bool hf_built_must_stop(const hf_built *built)
 /* Makes the as-built net of the design whose shape is in `workspace`. The shape must be an equilibrium of `model`. The
  * argument `model` must be the model of `scene`. Residuals of the as-built net are relative to the maximum tension of
  * the design. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if cables have no EA or are struts. Each error message begins
- * with `where`. Call hf_built_free even after a failure. */
+ * with `where`. Call hf_built_free even if hf_built_make fails. */
 hf_status hf_built_make(const char *where, const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
                         const hf_workspace *workspace, hf_built *built, hf_messages *messages);
 /* Frees the as-built net. This function does not reset the settings of the as-built net. */

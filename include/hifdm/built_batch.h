@@ -1,5 +1,5 @@
 /* built_batch - solves very many as-built nets with different errors on all cores (METHOD section 12).
- * Stability: internal; this header may change in any version.
+ * Stability: internal. This header may change in any version.
  *
  * Pipeline for eight samples at a time in vector lanes:
  *

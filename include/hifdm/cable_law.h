@@ -1,5 +1,5 @@
 /* cable_law - the laws that a cable can obey, and all functions that depend on the law (METHOD.md section 2).
- * Stability: internal; this header may change in any version.
+ * Stability: internal. This header may change in any version.
  *
  * The names and words of the laws are stable because files contain them.
  *

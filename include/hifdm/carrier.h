@@ -27,8 +27,8 @@ typedef struct {
  * the support from this node must be at most match_tolerance_m. The carrier takes ownership of the truss, even after a
  * failure. The function sets all members of *truss to zero. The frame of the carrier contains a pointer to the truss of
  * the carrier. Therefore, the carrier must not be moved in memory. Returns HF_OK. If the function fails, it adds
- * messages and returns HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even after a
- * failure. */
+ * messages and returns HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even if
+ * hf_carrier_build fails. */
 hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_scene *scene, hf_carrier *carrier,
                            hf_messages *messages);
 /* Frees the truss, the frame and the arrays. */
@@ -44,7 +44,7 @@ typedef struct {
 
 /* Solves the truss under forces on its attachments and under its own loads, such as temperature and weight. Either of
  * the arguments force_N [n_attachment][3] and `own` may be NULL. Returns HF_OK, HF_NO_MEMORY, or HF_MECHANISM if `own`
- * has a moment at a node where nothing resists rotation. Call hf_carrier_state_free even after a failure. */
+ * has a moment at a node where nothing resists rotation. Call hf_carrier_state_free even if hf_carrier_load fails. */
 hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, const hf_frame_load *own,
                           hf_carrier_state *state);
 

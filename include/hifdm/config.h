@@ -63,7 +63,7 @@ typedef struct {
 /* Reads and validates a case file. The strings overrides [n_override] have the form "key=value". The overrides replace
  * values of the file. If the file uses the old name of a key or word, the function accepts the old name and adds a
  * warning. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if the file has faults or cannot be read. The function
- * adds a message with file:line:column for each fault. Call hf_case_free even after a failure. */
+ * adds a message with file:line:column for each fault. Call hf_case_free even if hf_config_load fails. */
 hf_status hf_config_load(const char *path, const char *const *overrides, int n_override, hf_case *settings,
                          hf_messages *messages);
 
@@ -83,7 +83,7 @@ int hf_config_differences(const hf_case *a, const hf_case *b, char *text, size_t
 bool hf_config_location(const hf_case *settings, const char *key, char *text, size_t size);
 
 /* Makes and checks the scene that the case describes (hf_scene_check). Returns HF_OK or HF_NO_MEMORY. Returns
- * HF_BAD_CASE if the scene has faults or a file cannot be read. Call hf_scene_free even after a failure. */
+ * HF_BAD_CASE if the scene has faults or a file cannot be read. Call hf_scene_free even if hf_config_scene fails. */
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 
 /* Determines the target surface of a case that has a `surface` section. If the case has no `surface` section, the
@@ -97,7 +97,7 @@ hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_s
 
 /* Sets the material of cables and nodes of the scene from the lists `cables` and `nodes` of the case. A later row
  * replaces the values of an earlier row. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if a row matches nothing in
- * this net. Call hf_material_free even after a failure. */
+ * this net. Call hf_material_free even if hf_config_material fails. */
 hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_material *material,
                              hf_messages *messages);
 
@@ -112,16 +112,18 @@ hf_status hf_config_demand_expansion(const hf_case *settings, const hf_truss *tr
  * argument `truss` is NULL. A case without rows of `load_cases` has no load cases. Returns HF_OK or HF_NO_MEMORY.
  * Returns HF_BAD_CASE if a row matches nothing in this net or truss, if cables have no EA, or if a table cannot be
  * read. Other causes of HF_BAD_CASE are a temperature of a part with unknown expansion, and gravity on cables of
- * unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free even after a failure. */
+ * unknown mass. The load cases borrow their names from the case. Call hf_load_cases_free even if hf_config_load_cases
+ * fails. */
 hf_status hf_config_load_cases(const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                                hf_load_cases *states, hf_messages *messages);
 
 /* Makes and checks the truss of the case (hf_truss_check). The case must have a truss. Returns HF_OK or HF_NO_MEMORY.
- * Returns HF_BAD_CASE if the truss has faults or a file cannot be read. Call hf_truss_free even after a failure. */
+ * Returns HF_BAD_CASE if the truss has faults or a file cannot be read. Call hf_truss_free even if hf_config_truss
+ * fails. */
 hf_status hf_config_truss(const hf_case *settings, hf_truss *truss, hf_messages *messages);
 
 /* Makes the truss of the case and builds the carrier of the net from this truss (hf_carrier_build). Returns HF_OK,
- * HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even after a failure. */
+ * HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even if hf_config_carrier fails. */
 hf_status hf_config_carrier(const hf_case *settings, const hf_scene *scene, hf_carrier *carrier, hf_messages *messages);
 
 /* Frees the memory of a case. */

@@ -23,7 +23,7 @@ HF_API_BEGIN
 hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form, const char **why);
 
 /* Finds the shape of the case and certifies it (hf_certify). After the call, the workspace contains the shape. Unless
- * `history` is NULL, the function records the figures of each iteration in it. Returns result->status. If
+ * `history` is NULL, the function records the values of each iteration in `history`. Returns result->status. If
  * *workspace->stop was set, the status is HF_INTERRUPTED. Other possible values are HF_OK, HF_NOT_CONVERGED and the
  * statuses of ill-posed nets. */
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
@@ -90,12 +90,12 @@ bool hf_evaluate_is_unique(const hf_evaluator *evaluator);
 double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_variable);
 
 /* Finds the shape of one design and writes the shape to the workspace. The array design [model->n_variable] contains
- * the values of the design variables. Values of design variables that belong to cables must be above 0. Returns
- * result->status. If the status is not HF_OK, the design is infeasible, and psi_m and merit are NaN. If the design has
- * no shape (hf_status_has_shape), the tension ratios and the violation are NaN. If no taut cable holds a node of the
- * design, the status is HF_SINGULAR. If an objective of a design has no value, the status is HF_NOT_FINITE. `point` is
- * the memory of this thread for the objectives (hf_objectives_point_create). Without objectives, hf_evaluate does not
- * use `point`, and it may be NULL. */
+ * the values of the design variables. Design variables of cables must have values above 0. Returns result->status. If
+ * the status is not HF_OK, the design is infeasible, and psi_m and merit are NaN. If the design has no shape
+ * (hf_status_has_shape), the tension ratios and the violation are NaN. If no taut cable holds a node of the design, the
+ * status is HF_SINGULAR. If an objective of a design has no value, the status is HF_NOT_FINITE. `point` is the memory
+ * of this thread for the objectives (hf_objectives_point_create). If there are no objectives, hf_evaluate ignores
+ * `point`. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace,
                       hf_objectives_point *point, hf_form_result *result);
 

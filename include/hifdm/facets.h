@@ -1,5 +1,5 @@
 /* facets - the triangles and quadrilaterals that the cables of a net enclose.
- * Stability: internal; this header may change in any version.
+ * Stability: internal. This header may change in any version.
  *
  * Pipeline: nodes on the target surface -> plane graph of the cables between these nodes, seen along z -> faces of the
  * graph -> facets (METHOD section 9). */
@@ -20,21 +20,21 @@ typedef struct {
     void *block;    /* owned memory behind `corner` */
 } hf_facets;
 
-/* Finds the facets of a scene. The focal length surface->focal_length_m must be above 0, and surface->kind must not be
- * HF_SURFACE_AUTO.
+/* Finds the facets of a scene. The focal length surface->focal_length_m must be above 0. The kind surface->kind must
+ * not be HF_SURFACE_AUTO.
  *
- * Inner nodes are on the target surface. Other nodes are on the surface if the distance of their target position from
- * it is at most 1e-3 of the depth of the surface. A node that a cable connects with an inner node is also on the
- * surface if the cable stays close to it. The deviation of the cable must be at most 0.1 of its length. This rule
- * includes nodes at the rim of a net on a truss that deflects.
+ * Inner nodes are on the target surface. Any other node is on the surface if the distance between its target position
+ * and the surface is at most 1e-3 of the depth of the surface. If a cable connects a node with an inner node and stays
+ * close to the surface, the node is also on the surface. The cable may deviate from the surface by at most 0.1 of its
+ * length. Therefore, the nodes at the rim of a net are on the surface even if the truss of the net deflects.
  *
- * If the scene contains facets, the function uses those that have a node on the surface. If the scene contains no
- * facets, the function forms the plane graph of the cables between nodes on the surface, seen along z. Each minimal
- * face of this graph is a facet. If no cable runs along the rim, the straight line between two supports closes the face
- * at the inner nodes between them. The line does not close a face if boundary cables form an edge from one support to
- * the other.
+ * If the scene contains facets, the function uses the facets that have a node on the surface. If the scene contains no
+ * facets, the function projects the cables between nodes on the surface along z. These projected cables form a plane
+ * graph. Each minimal face of the plane graph is a facet. If no cable runs along the rim, the straight line between two
+ * supports closes the face of the inner nodes between these supports. If boundary cables form an edge from one support
+ * to the other, the straight line between the supports does not close a face.
  *
- * Returns HF_OK or HF_NO_MEMORY. Call hf_facets_free even after a failure. */
+ * Returns HF_OK or HF_NO_MEMORY. Call hf_facets_free even if hf_facets_find fails. */
 hf_status hf_facets_find(const hf_scene *scene, const hf_surface_settings *surface, hf_facets *facets);
 
 /* Frees the facets. */

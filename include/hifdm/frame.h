@@ -9,11 +9,11 @@
  *   hf_frame_condense    Cholesky factor -> flexibility of selected nodes
  *
  * A member is a spatial beam with 12 degrees of freedom (METHOD section 8), or it carries only axial force. Beams
- * follow the theory of Euler and Bernoulli or the theory of Timoshenko. The matrix is stored as a lower band in
- * LAPACK's layout. The unknowns are numbered for a small bandwidth.
+ * follow the Euler-Bernoulli theory or the Timoshenko theory. The stiffness matrix is stored as a lower band in the
+ * layout of LAPACK. The numbering of the unknowns reduces the bandwidth of the stiffness matrix.
  *
- * Vectors over the nodes have the shape [n_node][6]. A vector contains the components along x, y, z in m or N, followed
- * by the components about x, y, z in rad or N m. */
+ * Vectors over the nodes have the shape [n_node][6]. A vector contains, for each node, the components along x, y and z
+ * in m or N. The components about x, y and z in rad or N m follow. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -21,7 +21,8 @@
 
 HF_API_BEGIN
 
-/* A truss with its factored stiffness matrix. A frame does not change after it is built, so threads can share it. */
+/* Contains a truss with its factored stiffness matrix. A frame does not change after it is built. Threads can therefore
+ * share a frame. */
 typedef struct {
     const hf_truss *truss; /* the truss, borrowed; it must outlive the frame */
     int n_dof;             /* number of unknowns */
@@ -40,7 +41,7 @@ typedef struct {
 /* rotation that no beam resists because all members at the node are pinned; its value is 0 */
 #define HF_FRAME_ABSENT -2
 
-/* One load case. If a member is NULL, there is no load of this kind. */
+/* One load case. If a pointer in this struct is NULL, the load case has no load of this kind. */
 typedef struct {
     const double *force; /* [n_node][6] nodal forces in N and moments in N m */
     /* [n_node][6] displacements of supported degrees of freedom, m and rad; others are ignored */
@@ -49,9 +50,9 @@ typedef struct {
 } hf_frame_load;
 
 /* Builds the frame of a checked truss. Returns HF_OK, or HF_BAD_CASE if every node is supported. Returns HF_MECHANISM
- * if the truss is a mechanism or lacks supports. The message then names a node and a degree of freedom that can move
- * without force. Returns HF_NO_MEMORY if memory runs out or the matrix is too large, and HF_NO_LAPACK if LAPACK cannot
- * be loaded. Call hf_frame_free even after a failure. */
+ * if the truss is a mechanism or lacks supports. The error message contains a node and a degree of freedom that can
+ * move without a force. Returns HF_NO_MEMORY if memory runs out or the matrix is too large. Returns HF_NO_LAPACK if
+ * LAPACK cannot be loaded. Call hf_frame_free even if hf_frame_build fails. */
 hf_status hf_frame_build(const hf_truss *truss, hf_frame *frame, hf_messages *messages);
 /* Frees the arrays of the frame. This function does not free the truss. */
 void hf_frame_free(hf_frame *frame);
@@ -59,34 +60,36 @@ void hf_frame_free(hf_frame *frame);
 /* Returns the number of doubles in the array `work` that hf_frame_solve needs for n_case load cases. */
 size_t hf_frame_work_size(const hf_frame *frame, int n_case);
 
-/* Solves the n_case load cases load [n_case] in one pass over the Cholesky factor. The array work [hf_frame_work_size]
- * is scratch memory. The array displacement [n_case][n_node][6] receives the displacements in m and rad. Supported
- * degrees of freedom receive the settlements. On success returns HF_OK and sets *bad_dof to -1. Returns HF_MECHANISM if
- * a moment acts at a node where nothing resists rotation. If the status is HF_MECHANISM, *bad_dof is 6 * node + dof,
- * and displacement is unchanged. */
+/* Solves the n_case load cases in the array `load` in one pass over the Cholesky factor. The array work
+ * [hf_frame_work_size] is scratch memory. The array displacement [n_case][n_node][6] receives the displacements in m
+ * and rad. At supported degrees of freedom, the displacements are the settlements. If the function succeeds, it returns
+ * HF_OK and sets *bad_dof to -1. Returns HF_MECHANISM if a moment acts at a node where nothing resists rotation. If the
+ * status is HF_MECHANISM, *bad_dof is 6 * node + dof, and displacement is unchanged. */
 hf_status hf_frame_solve(const hf_frame *frame, int n_case, const hf_frame_load *load, double *work,
                          double *displacement, int *bad_dof);
 
-/* Computes the reactions in a load case from its displacement [n_node][6]. The array reaction [n_node][6] receives the
- * forces of the supports on the truss, and 0 at free degrees of freedom. The array residual [n_node][6] receives the
- * residual forces at free degrees of freedom, and 0 at supported ones. The array `residual` may be NULL. */
+/* Computes the reactions in a load case from the nodal displacements displacement [n_node][6]. The array reaction
+ * [n_node][6] receives the forces of the supports on the truss. At free degrees of freedom, the reactions are 0. The
+ * array residual [n_node][6] receives the residual forces at free degrees of freedom. At supported degrees of freedom,
+ * the residual forces are 0. The array `residual` may be NULL. */
 void hf_frame_reactions(const hf_frame *frame, const hf_frame_load *load, const double *displacement, double *reaction,
                         double *residual);
 
-/* Computes the member forces in a load case from its displacement [n_node][6]. The array end_force [n_member][12]
- * receives the forces of the nodes on the member in local axes. The forces are Nx, Vy, Vz, Tx, My, Mz at end i,
- * followed by those at end j, in N and N m. If Nx > 0 at end i, the member is under compression. */
+/* Computes the member forces in a load case from the nodal displacements displacement [n_node][6]. The array end_force
+ * [n_member][12] receives the forces of the nodes on the member in local axes. The forces are Nx, Vy, Vz, Tx, My and
+ * Mz, in N and N m, first at end i and then at end j. If the axial force Nx at end i is above 0, the member is under
+ * compression. */
 void hf_frame_member_forces(const hf_frame *frame, const hf_frame_load *load, const double *displacement,
                             double *end_force);
 
-/* Returns the strain energy in J for this displacement [n_node][6] in a load case. The strain energy includes only
- * elastic strain, not thermal expansion. */
+/* Returns the strain energy in J for the nodal displacements displacement [n_node][6] in a load case. The strain energy
+ * includes only elastic strain, not thermal expansion. */
 double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, const double *displacement);
 
-/* Computes the flexibility F of the nodes node [n_point] (Eq. 15, condensed). The entry in row 3*i+c and column 3*k+d
- * of flexibility_m_per_N [3 n_point][3 n_point] belongs to direction c at node[i] and direction d at node[k]. The entry
- * is the displacement of node[i] along c under a unit force on node[k] along d. The flexibility matrix is exactly
- * symmetric. Returns HF_OK or HF_NO_MEMORY. */
+/* Computes the flexibility matrix F of the n_point nodes in the array `node` (Eq. 15, condensed). Row 3*i+c and column
+ * 3*k+d of the array flexibility_m_per_N [3 n_point][3 n_point] belong to direction c at node[i] and direction d at
+ * node[k]. The entry in this row and column is the displacement of node[i] along c under a unit force on node[k] along
+ * d. The flexibility matrix is exactly symmetric. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 HF_API_END

@@ -3,8 +3,8 @@
  *
  * Pipeline: settings of the section -> hf_scene_NAME_fault, which checks the case -> hf_scene_NAME -> scene.
  *
- * A new generator NAME with settings of type hf_TYPE needs one row of HF_GENERATORS, its settings and its keys in this
- * header. The file src/net/generate_NAME.c of a generator has three functions:
+ * To add a generator NAME, define its struct of settings hf_TYPE, its keys and one row of HF_GENERATORS in this header.
+ * The file src/net/generate_NAME.c of a generator has three functions:
  *
  *   hf_scene_NAME         const hf_TYPE *, const double EA_N[2], hf_scene *, hf_messages * -> hf_status
  *                         makes the scene
@@ -24,7 +24,7 @@
 
 HF_API_BEGIN
 
-/* Each generator is one row X(name of the section, type of the settings, keys, help). `hifdm schema` lists the
+/* Each row X(name of the section, type of the settings, keys, help) defines one generator. `hifdm schema` lists the
  * generators in this order. */
 #define HF_GENERATORS(X)                                                                                               \
     X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS,                                                               \
@@ -32,7 +32,7 @@ HF_API_BEGIN
     X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS,                                                                   \
       "The section `paraboloid` generates a net over a paraboloid with a round aperture. The section `paraboloid` "    \
       "can also generate a rear net.")
-/* Help of the section scene. The help lists all generators, and import. */
+/* Defines the help of the section `scene`. The help lists all generators, and `import`. */
 #define HF_GENERATORS_HELP                                                                                             \
     "The section `scene` defines the net. A case file contains exactly one of the sections `parabolic_cylinder`, "     \
     "`paraboloid` and `import`."
@@ -41,11 +41,11 @@ HF_API_BEGIN
 
 /* ---- rear nets, which several generators can make ---- */
 
-/* The direction of the ties between the nets of a double net. */
+/* The ties between the two nets of a double net run along z or along the normal of the front net. */
 typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
 
-/* Members that all settings with a rear net have. The rim of the rear net is rear_distance_m below the rim of the front
- * net. The rear net bulges towards the front net. */
+/* All settings of generators with a rear net contain these members. The rim of the rear net is rear_distance_m below
+ * the rim of the front net. The rear net bulges towards the front net. */
 #define HF_DOUBLE_NET_MEMBERS                                                                                          \
     double rear_distance_m;         /* distance between the rims; 0: no rear net */                                    \
     double rear_focal_length_m;     /* focal length of the rear net; 0: the focal length of the front net */           \
@@ -53,7 +53,7 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
     hf_law tie_law;                 /* law of the ties */                                                              \
     double tie_tension_N; /* tension of the ties at the target positions (laws tension, force_density, elastic) */
 
-/* Keys of these members, as rows X(section, member, type, minimum, maximum, default, unit, words, help) of
+/* Each row X(section, member, type, minimum, maximum, default, unit, words, help) defines the key of such a member in
  * hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
@@ -76,7 +76,7 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
 
 /* ---- parabolic_cylinder ---- */
 
-/* Spacing of the nodes: equal arc length or equal projected length. */
+/* The nodes have equal spacing in arc length or in projected length. */
 typedef enum { HF_SPACING_EQUAL_ARC, HF_SPACING_EQUAL_PROJECTED } hf_spacing;
 /* Cables that are boundary cables. */
 typedef enum { HF_BOUNDARY_OUTER_EDGE, HF_BOUNDARY_MODULE_EDGES } hf_boundary;
@@ -85,11 +85,11 @@ typedef enum { HF_SUPPORTS_MODULE_CORNERS, HF_SUPPORTS_RIBS, HF_SUPPORTS_PERIMET
 /* Pattern of the cables. */
 typedef enum { HF_PATTERN_QUAD, HF_PATTERN_TRIANGLE, HF_PATTERN_DIAGONAL, HF_PATTERN_ALTERNATING } hf_pattern;
 
-/* Words of hf_spacing in a case file. The last entry of the array is NULL. */
+/* Contains the words of hf_spacing in a case file. The last entry of the array is NULL. */
 extern const char *const hf_spacing_word[3];
 
-/* A net over the parabolic cylinder z = x^2/(4 f). The x axis runs along the directrix and the y axis along the
- * generatrix. The origin is on the vertex line. */
+/* Describes a net over the parabolic cylinder z = x^2/(4 f). The x axis runs along the directrix and the y axis along
+ * the generatrix. The origin is on the vertex line. */
 typedef struct {
     double aperture_m;       /* aperture along the directrix (x), symmetric about x = 0 */
     double length_m;         /* length along the generatrix (y), from y = 0 */
@@ -107,8 +107,8 @@ typedef struct {
     HF_DOUBLE_NET_MEMBERS
 } hf_cylinder;
 
-/* Keys of the section, as rows X(section, member, type, minimum, maximum, default, unit, words, help) of hf_field_table
- * (config.h). */
+/* Each row X(section, member, type, minimum, maximum, default, unit, words, help) defines a key of the section in
+ * hf_field_table (config.h). */
 #define HF_CYLINDER_KEYS(X, section)                                                                                   \
     X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                       \
       "The key `aperture_m` sets the aperture of the net along the directrix (x)")                                     \
@@ -166,28 +166,29 @@ typedef struct {
  *                   rear net also front (all of the former), rear, tie, and rear_directrix and so on
  *
  * Free nodes of the rear net have the role edge, so psi includes only nodes of the front net. The rear supports are
- * behind the front supports, in the direction of the ties. EA_N [2] has the axial stiffness in N by hf_group. The value
- * 0 means that the stiffness of a group is not given. NULL means that neither is given. Returns HF_OK or HF_NO_MEMORY.
- * Returns HF_BAD_CASE if the net would be too large, if elastic ties have no EA, or if
- * hf_scene_parabolic_cylinder_fault finds a fault. Call hf_scene_free even after a failure. */
+ * behind the front supports, in the direction of the ties. The array EA_N [2] contains the axial stiffness in N of each
+ * group (hf_group). The value 0 means that the stiffness of a group is not given. If EA_N is NULL, no axial stiffness
+ * is given. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if the net would be too large or if elastic ties have no
+ * EA. Returns HF_BAD_CASE also if hf_scene_parabolic_cylinder_fault finds a fault. Call hf_scene_free even if
+ * hf_scene_parabolic_cylinder fails. */
 hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double EA_N[2], hf_scene *scene,
                                       hf_messages *messages);
-/* Returns the member whose value cannot be realised and writes the reason to what[size]. Returns NULL if there is no
- * fault. */
+/* Returns the name of the member whose value cannot be realised, and writes the reason to what[size]. Returns NULL if
+ * there is no fault. */
 const char *hf_scene_parabolic_cylinder_fault(const hf_cylinder *cylinder, char *what, size_t size);
-/* Sets kind and focal length in *surface, and also the strip width if the strips are equal. Before the call, *surface
- * must be all zero. */
+/* Sets the kind and the focal length in *surface. If the strips are equal, the function also sets the strip width.
+ * Before the call, all members of *surface must be zero. */
 void hf_scene_parabolic_cylinder_surface(const hf_cylinder *cylinder, hf_surface_settings *surface);
 
 /* ---- paraboloid ---- */
 
-/* The grid of a net over a paraboloid. */
+/* Defines the grid of a net over a paraboloid. */
 typedef enum { HF_GRID_TRIANGLE, HF_GRID_QUAD } hf_grid;
 
-/* A net over the paraboloid z = (x^2 + y^2)/(4 f). The net is above the circle of the aperture, whose centre is at x =
- * offset_m. The rim of the front net is in the plane z_rim(x). The rear net is the surface z_rim - rear_distance_m +
- * (R^2 - r^2)/(4 f_rear). In this equation, r is the distance from the axis of the aperture, and R is the radius of the
- * aperture. */
+/* Describes a net over the paraboloid z = (x^2 + y^2)/(4 f). The net is above the circular aperture. The centre of the
+ * aperture is at x = offset_m. The rim of the front net is in the plane z_rim(x). The equation of the rear net is z =
+ * z_rim - rear_distance_m + (R^2 - r^2)/(4 f_rear). In this equation, r is the distance from the axis of the aperture,
+ * and R is the radius of the aperture. */
 typedef struct {
     double aperture_m;     /* diameter of the aperture */
     double focal_length_m; /* focal length f */
@@ -198,7 +199,7 @@ typedef struct {
     HF_DOUBLE_NET_MEMBERS
 } hf_paraboloid;
 
-/* Keys of the section, in the form of HF_CYLINDER_KEYS. */
+/* Defines the keys of the section in the form of HF_CYLINDER_KEYS. */
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
     X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                       \
       "The key `aperture_m` sets the diameter of the aperture")                                                        \
@@ -228,17 +229,19 @@ typedef struct {
  *   sets            front, front_edge (cables that end at a support); with a rear net also rear, rear_edge, tie
  *
  * Free nodes of the rear net have the role edge, so psi includes only nodes of the front net. The rear supports are
- * vertically below the front supports. EA_N, errors and ownership are the same as for hf_scene_parabolic_cylinder. */
+ * vertically below the front supports. The rules of hf_scene_parabolic_cylinder for EA_N, errors and ownership also
+ * apply to this function. */
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages);
-/* Finds the supports of the front net in the order of their angle from x towards y. The function sets *n to the number
- * of supports and *position_m to an array of their positions [n][3] in m. The array *position_m is allocated with
- * malloc. The caller must free it even after a failure. Returns HF_OK or HF_NO_MEMORY. */
+/* Finds the supports of the front net, sorted by their angle from x towards y. The function sets *n to the number of
+ * supports. The array *position_m [n][3] contains the positions of the supports in m. The function allocates the array
+ * *position_m with malloc. The caller must free *position_m even if the function fails. Returns HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_paraboloid_rim(const hf_paraboloid *paraboloid, int *n, double **position_m);
-/* Returns the member whose value cannot be realised and writes the reason to what[size]. Returns NULL if there is no
- * fault. */
+/* Returns the name of the member whose value cannot be realised, and writes the reason to what[size]. Returns NULL if
+ * there is no fault. */
 const char *hf_scene_paraboloid_fault(const hf_paraboloid *paraboloid, char *what, size_t size);
-/* Sets kind and focal length in *surface, which must be all zero before the call. */
+/* Sets the kind and the focal length in *surface. Before the call, all members of *surface must be zero. */
 void hf_scene_paraboloid_surface(const hf_paraboloid *paraboloid, hf_surface_settings *surface);
 
 HF_API_END

@@ -1,6 +1,6 @@
 /* load_cases - the load cases of the as-built net, with temperatures, loads and support displacements (METHOD section
  * 12).
- * Stability: internal; this header may change in any version. */
+ * Stability: internal. This header may change in any version. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -8,8 +8,8 @@
 
 HF_API_BEGIN
 
-/* One load case of the as-built net. The arrays have the order of the scene and the truss. Values that the case does
- * not give are zero. */
+/* Describes one load case of the as-built net. The arrays have the order of the nodes and cables in the scene and of
+ * the members in the truss. Values that the case does not give are zero. */
 typedef struct {
     const char *name;               /* name of the load case; borrowed */
     double *rise_K;                 /* [n_cable] rise above the temperature at which the cables were cut */
@@ -19,7 +19,7 @@ typedef struct {
     double gravity_m_per_s2[3];     /* gravitational acceleration along x, y, z */
 } hf_load_case;
 
-/* The load cases of a case and the material of its net. */
+/* Contains the load cases of a case and the material of its net. */
 typedef struct {
     int n;                                     /* number of load cases; 0: no memory is allocated */
     hf_load_case load_case[HF_LOAD_CASES_MAX]; /* [n] the load cases */
@@ -27,8 +27,9 @@ typedef struct {
     void *block;                               /* owned memory behind the arrays */
 } hf_load_cases;
 
-/* Allocates n >= 1 load cases of a scene and a truss with n_member members. Without a truss, n_member is 0. All values
- * are zero, and all names are NULL. Returns HF_OK or HF_NO_MEMORY. Call hf_load_cases_free even after a failure. */
+/* Allocates n load cases for a scene and for a truss with n_member members. The number n must be at least 1. If the
+ * case has no truss, n_member is 0. The function sets all values to zero and all names to NULL. Returns HF_OK or
+ * HF_NO_MEMORY. Call hf_load_cases_free even if hf_load_cases_allocate fails. */
 hf_status hf_load_cases_allocate(const hf_scene *scene, int n_member, int n, hf_load_cases *load_cases);
 /* Frees the load cases and the material. */
 void hf_load_cases_free(hf_load_cases *load_cases);

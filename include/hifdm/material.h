@@ -1,5 +1,5 @@
 /* material - thermal expansion and mass of cables and nodes of the as-built net.
- * Stability: internal; this header may change in any version. */
+ * Stability: internal. This header may change in any version. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -8,7 +8,7 @@
 
 HF_API_BEGIN
 
-/* Properties of the cables and nodes of a scene. */
+/* Contains the properties of the cables and nodes of a scene. */
 typedef struct {
     double *expansion_per_K; /* [n_cable] coefficient of thermal expansion; NaN: not given */
     double *mass_kg_per_m;   /* [n_cable] mass per unstressed length; NaN: not given */
@@ -16,8 +16,8 @@ typedef struct {
     void *block;             /* owned memory behind the arrays */
 } hf_material;
 
-/* Allocates the properties of a scene. Initially no property is given. Returns HF_OK or HF_NO_MEMORY. Call
- * hf_material_free even after a failure. */
+/* Allocates the properties of the cables and nodes of a scene. Initially no property is given. Returns HF_OK or
+ * HF_NO_MEMORY. Call hf_material_free even if hf_material_allocate fails. */
 hf_status hf_material_allocate(const hf_scene *scene, hf_material *material);
 /* Frees the properties. */
 void hf_material_free(hf_material *material);

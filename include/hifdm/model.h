@@ -1,5 +1,5 @@
-/* model - a scene that is prepared for solving. A model adds numbering, matrix band, laws, loads and design variables
- * to its scene.
+/* model - a scene that is prepared for solving. A model adds the numbering, the matrix band, the laws, the loads and
+ * the design variables to its scene.
  * Stability: stable.
  *
  * Pipeline:
@@ -12,8 +12,8 @@
  *
  * The model renumbers the nodes. The row of a node is its index in the model. Free nodes come first, in the order of
  * the matrix band. Rows 0 to n_free-1 are therefore the rows of the force density matrix D. Supports on a truss follow
- * the free nodes, and all other supports come last. The cables have the same order as in the scene. D is stored as a
- * lower band in LAPACK's column-major layout. D(i,j) is band[i-j + j*(half_bandwidth+1)]. */
+ * the free nodes, and all other supports come last. The cables have the same order as in the scene. The matrix D is
+ * stored as a lower band in the column-major layout of LAPACK. D(i,j) is band[i-j + j*(half_bandwidth+1)]. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -23,9 +23,9 @@
 
 HF_API_BEGIN
 
-/* A chain is straight if the relative excess of its length over the distance of its supports is below this limit. The
- * sag of such a chain would be below 2e-5 of its span, and its tension above 1e4 times its load. The tests of model,
- * solve and stress also pass with limits of 1e-10 and 1e-8. With a limit of 1e-11 or 1e-7, one test of the model fails
+/* A chain is straight if its length exceeds the distance between its supports by less than this relative limit. The sag
+ * of such a chain would be below 2e-5 of its span, and its tension above 1e4 times its load. The tests of model, solve
+ * and stress also pass with limits of 1e-10 and 1e-8. With a limit of 1e-11 or 1e-7, one test of the model fails
  * (straight_chains_are_found). */
 #define HF_STRAIGHT_EXCESS 1e-9
 
@@ -37,7 +37,7 @@ typedef struct {
     double direction[3]; /* unit vector of the displacement */
 } hf_variable;
 
-/* A scene that is prepared for solving. In this struct, "row" means the index of a node in the model. */
+/* Contains a scene that is prepared for solving. In this struct, "row" means the index of a node in the model. */
 typedef struct {
     /* n_free: nodes that are not supports; n_inner_node: nodes that psi includes */
     int n_node, n_free, n_cable, n_inner_node;
@@ -66,10 +66,10 @@ typedef struct {
     double *EA_N;                    /* [n_cable] axial stiffness; NULL if no law in force needs it */
     double *start_q_N_per_m;         /* [n_cable] first force densities */
 
-    /* Design variables are the variables of optimize.variables. By default the design variables are the pretensions of
-     * the boundary cables with a free end. If exactly two varied cables meet at a free node, their design variables
-     * belong to the same group, called a chain. Unequal changes within a chain push its nodes along the chain, and
-     * equal changes change its sag. */
+    /* The rows of optimize.variables define the design variables. By default, the design variables are the pretensions
+     * of the boundary cables that end at a free node. If exactly two varied cables meet at a free node, their design
+     * variables belong to the same group, called a chain. Unequal changes within a chain push its nodes along the
+     * chain, and equal changes change its sag. */
     int n_variable, n_variable_group; /* numbers of design variables and of chains */
     int *variable_cable;              /* [n_variable] varied cable; -1: the variable displaces a support */
     int *variable_group;              /* [n_variable] index of the chain, 0 to n_variable_group-1 */
@@ -103,16 +103,17 @@ typedef struct {
     void *block, *attachment_block, *variable_block; /* owned memory behind the arrays */
 } hf_model;
 
-/* Builds a model from a checked scene with the laws that form->method puts into effect. Returns HF_OK. Returns
- * HF_NO_MEMORY with a message if memory runs out or the band is too large. Call hf_model_free even after a failure. */
+/* Builds a model from a checked scene. The method form->method determines the laws of the cables. Returns HF_OK.
+ * Returns HF_NO_MEMORY with a message if memory runs out or the band is too large. Call hf_model_free even if
+ * hf_model_build fails. */
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
-/* Connects supports with a truss. The support node[i] of the scene becomes attachment i of n_attachment > 0. Forces on
- * the attachments displace them according to flexibility_m_per_N [3 n_attachment][3 n_attachment]. The function copies
- * the matrix and makes it exactly symmetric. All other supports remain fixed. A cable of law length between an
- * attachment and another support would act as a rigid rod in the truss. A cable between an attachment and another
- * support therefore gets law tension with its first tension. Call this function at most once per model, before
- * workspaces for the model are created.
+/* Connects supports with a truss. The support node[i] of the scene becomes attachment i of n_attachment > 0. The matrix
+ * flexibility_m_per_N [3 n_attachment][3 n_attachment] determines the displacements of the attachments under forces on
+ * the attachments. The function copies the matrix and makes it exactly symmetric. All other supports remain fixed. A
+ * cable of law length between an attachment and another support would act as a rigid rod in the truss. A cable between
+ * an attachment and another support therefore gets law tension with its first tension. Call hf_model_attach at most
+ * once per model, and before workspaces for the model are created.
  *
  * Returns HF_OK or HF_NO_MEMORY. If an argument is invalid, returns HF_BAD_CASE with a message that contains the index
  * of the attachment. A node is invalid if it is not a support or occurs twice. The matrix is invalid if it is not
@@ -122,8 +123,8 @@ hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, co
 
 /* Adds a Newton matrix to the workspaces of a net on a truss even if no law iterates. Nets with struts are excluded.
  * With this matrix, populations share one factored matrix and solve net and truss in vector lanes (solver chord). The
- * set-up of this solver is expensive compared with one form-finding. Call this function before workspaces are
- * created. */
+ * set-up of this solver is expensive compared with one form-finding. Call hf_model_want_newton before workspaces for
+ * the model are created. */
 void hf_model_want_newton(hf_model *model);
 
 /* Returns the force in N that is the reference for residuals and slack cables, as reference_N of a model of this scene.
@@ -151,11 +152,11 @@ void hf_model_variable_name(const hf_model *model, const hf_scene *scene, int i_
 /* Returns the unit of a design variable as a constant string: "N", "N/m" or "m". */
 const char *hf_model_variable_unit(const hf_model *model, int i_variable);
 
-/* Writes the cables of a chain to text[size] in the form "cable + cable + cable". A text that does not fit is truncated
- * and ends with " ...". */
+/* Writes the cables of a chain to text[size] in the form "cable + cable + cable". If the name does not fit into the
+ * buffer, the function truncates the name and ends it with " ...". */
 void hf_model_chain_name(const hf_model *model, const hf_scene *scene, int i_chain, char *text, size_t size);
 
-/* Copies the positions row_m [3][n_node] by row to position_m [n_node][3] in the order of the scene, in m. */
+/* Copies the positions in m from row_m [3][n_node] to position_m [n_node][3] in the order of the scene. */
 void hf_model_positions(const hf_model *model, const double *row_m, double *position_m);
 
 /* Frees the arrays of the model. */

@@ -1,5 +1,5 @@
 /* objectives - objectives of a design, as blocks of residuals of a shape with exact derivatives (METHOD section 7).
- * Stability: internal; this header may change in any version.
+ * Stability: internal. This header may change in any version.
  *
  * Each row of optimize.objective or optimize.front has one block. The weights of optimize.front are 1. Pipeline:
  *
@@ -53,8 +53,8 @@ typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *sh
 typedef struct hf_objectives_nets {
     int n_load_case, n_sample;         /* number of load cases and number of samples */
     const char *const *load_case_name; /* [n_load_case] names of the load cases */
-    /* Allocates the scratch memory *room of one thread. Returns HF_OK or HF_NO_MEMORY. Call `close` even after a
-     * failure. */
+    /* Allocates the scratch memory *room of one thread. Returns HF_OK or HF_NO_MEMORY. Call `close` even if `open`
+     * fails. */
     hf_status (*open)(const struct hf_objectives_nets *nets, void **room);
     /* Frees the scratch memory of a thread. */
     void (*close)(void *room);
@@ -112,7 +112,7 @@ typedef struct hf_objectives_point {
  * if no objective needs them. The argument `nets` is borrowed and may be NULL if all objectives are measured on the
  * design. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would be too many residuals, or if a row needs
  * data that this scene does not have. The function adds a message for each row that needs missing data. Call
- * hf_objectives_free even after a failure. */
+ * hf_objectives_free even if hf_objectives_create fails. */
 hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                                const hf_surface_settings *surface, const hf_facets *facets,
                                const hf_objectives_nets *nets, hf_objectives *objectives, hf_messages *messages);
@@ -125,7 +125,7 @@ void hf_objectives_free(hf_objectives *objectives);
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE]);
 
 /* Allocates the memory of one thread for these objectives. If `objectives` is NULL, *point is empty. Returns HF_OK or
- * HF_NO_MEMORY. Call hf_objectives_point_free even after a failure. */
+ * HF_NO_MEMORY. Call hf_objectives_point_free even if hf_objectives_point_create fails. */
 hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objectives_point *point);
 /* Frees the memory of a thread. */
 void hf_objectives_point_free(hf_objectives_point *point);

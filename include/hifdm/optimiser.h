@@ -58,7 +58,8 @@ typedef struct {
 
 /* Creates an optimiser and proposes generation 0. The initial design initial [n_variable] has the values of the design
  * variables after form-finding. The optimiser borrows settings and model until hf_optimiser_free. If kind is NULL, the
- * population has bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free even after a failure. */
+ * population has bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free even if
+ * hf_optimiser_create fails. */
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
                               const hf_model *model, const double *initial, hf_optimiser *optimiser);
 

@@ -1,5 +1,5 @@
 /* pattern - the far field of a reflector by physical optics over its facets (METHOD section 13).
- * Stability: internal; this header may change in any version.
+ * Stability: internal. This header may change in any version.
  *
  * Pipeline at one frequency:
  *
@@ -77,7 +77,7 @@ void hf_pattern_plan(const hf_pattern_settings *settings, const hf_pattern_surfa
 int hf_pattern_angles(const hf_far_field *pattern);
 
 /* Allocates and prepares the sums at one frequency for n_thread threads. The far field borrows settings and surface.
- * Returns HF_OK or HF_NO_MEMORY. Call hf_pattern_free even after a failure. */
+ * Returns HF_OK or HF_NO_MEMORY. Call hf_pattern_free even if hf_pattern_create fails. */
 hf_status hf_pattern_create(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                             double frequency_Hz, int n_thread, hf_far_field *pattern);
 
@@ -136,7 +136,7 @@ typedef struct {
 } hf_pattern_table;
 
 /* Allocates a table with these numbers of frequencies, cuts and angles. Returns HF_OK or HF_NO_MEMORY. Call
- * hf_pattern_table_free even after a failure. */
+ * hf_pattern_table_free even if hf_pattern_table_create fails. */
 hf_status hf_pattern_table_create(int n_frequency, int n_cut, int n_theta, hf_pattern_table *table);
 /* Frees the table. */
 void hf_pattern_table_free(hf_pattern_table *table);

@@ -56,7 +56,7 @@ typedef struct {
  * Returns HF_OK. Returns HF_BAD_CASE with messages about all faults. Returns HF_NOT_CONVERGED or the status of an
  * ill-posed net with messages that contain the cables or nodes. The other failures are HF_MECHANISM, HF_NO_MEMORY and
  * HF_NO_LAPACK. Every failure adds an error message. If the form-finding fails, `form` and `workspace` contain its last
- * state, and there is no batch. Call hf_problem_free even after a failure. */
+ * state, and there is no batch. Call hf_problem_free even if hf_problem_open fails. */
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *problem,
                           hf_messages *messages);
 

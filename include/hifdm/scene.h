@@ -46,7 +46,8 @@ typedef struct {
 } hf_scene;
 
 /* Allocates a scene of this size with all values zero. The arguments with_load, with_EA and with_line state whether
- * load_N, EA_N and the line numbers exist. Returns HF_OK or HF_NO_MEMORY. Call hf_scene_free even after a failure. */
+ * load_N, EA_N and the line numbers exist. Returns HF_OK or HF_NO_MEMORY. Call hf_scene_free even if hf_scene_allocate
+ * fails. */
 hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line);
 
 /* Checks the rules that every scene must satisfy, whether it is generated or read. A scene needs a free node, an inner

@@ -31,7 +31,7 @@ typedef struct {
 /* Copies the arrays into a scene. The array group_EA_N, indexed by hf_group, contains the axial stiffness in N of
  * cables that have no EA_N of their own. The value 0 means that there is none. Returns HF_OK or HF_NO_MEMORY. If the
  * arrays have faults, returns HF_BAD_CASE with messages that contain the node, cable or set. The caller must then check
- * the scene (hf_scene_check). Call hf_scene_free even after a failure. */
+ * the scene (hf_scene_check). Call hf_scene_free even if hf_scene_from_arrays fails. */
 hf_status hf_scene_from_arrays(const hf_scene_arrays *arrays, const double group_EA_N[2], hf_scene *scene,
                                hf_messages *messages);
 

@@ -211,7 +211,7 @@ hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model 
 hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *table,
                            const hf_pattern_summary *figures, hf_messages *messages);
 /* Reads the far field of the shape of a stage. Returns HF_OK or HF_NO_MEMORY. Returns HF_IO after a read error or if
- * there is no far field. Call hf_pattern_table_free even after a failure. */
+ * there is no far field. Call hf_pattern_table_free even if hf_store_read_pattern fails. */
 hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages);
 
 /* Writes the shape in the workspace as the shape of load case `name` of the as-built net. The function replaces an
@@ -252,14 +252,14 @@ typedef struct {
  * zero. */
 
 /* Reads every member of the summary. The values are bit-for-bit identical to those that were passed to hf_store_finish.
- * If a stage does not exist, its figures are 0. Call hf_summary_free even after a failure. */
+ * If a stage does not exist, its figures are 0. Call hf_summary_free even if hf_store_read_summary fails. */
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages);
 
-/* Reads the scene without its line numbers. Call hf_scene_free even after a failure. */
+/* Reads the scene without its line numbers. Call hf_scene_free even if hf_store_read_scene fails. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
 /* Reads the shape of a stage. The function also returns HF_IO if there is no such shape. The numbers of nodes and
- * cables of the shape are those of hf_store_read_scene. Call hf_shape_free even after a failure. */
+ * cables of the shape are those of hf_store_read_scene. Call hf_shape_free even if hf_store_read_shape fails. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 /* Reads the shape of load case `name`, in the same way as hf_store_read_shape. */
 hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
@@ -290,7 +290,7 @@ hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_stat
 
 /* Reads the displacements and forces of the truss in load case `name`. The argument `truss` is the truss that
  * hf_store_read_truss returned. The function also returns HF_IO if the load case has no shape. Call
- * hf_carrier_state_free even after a failure. */
+ * hf_carrier_state_free even if hf_store_read_load_case_truss fails. */
 hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
                                         hf_carrier_state *state, hf_messages *messages);
 

@@ -1,5 +1,5 @@
 /* tolerance - the effect of errors of cut lengths, stiffness, supports and temperature on an as-built net.
- * Stability: internal; this header may change in any version.
+ * Stability: internal. This header may change in any version.
  *
  * The effect of the errors is computed to first order, and from samples that are solved (METHOD section 12). Pipeline:
  *

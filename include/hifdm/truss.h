@@ -219,7 +219,7 @@ typedef struct {
  * on the cylinder. At the outer edge of a net with edge ties, the front nodes of the truss are the supports of these
  * ties. The ids of the front nodes are f<i>_<j>, and the ids of the rear nodes are r<i>_<j>. Nodes inside a unit of
  * several panels have ids such as f<i>.<k>_<j> or f<i>_<j>.<k>. The ids of members are <node>-<node>. Returns HF_OK,
- * HF_NO_MEMORY, or HF_BAD_CASE if the truss would be too large. Call hf_truss_free even after a failure. */
+ * HF_NO_MEMORY, or HF_BAD_CASE if the truss would be too large. Call hf_truss_free even if hf_truss_generate fails. */
 hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder *cylinder, hf_truss *truss,
                             hf_messages *messages);
 
@@ -227,7 +227,7 @@ hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder
  * r<k>. The nodes are numbered in the order of the supports of the net, from x towards y. The ids of members are
  * <node>-<node>. The hinges and their mass are at the ends of the verticals. Returns HF_OK or HF_NO_MEMORY. Returns
  * HF_BAD_CASE if hf_truss_ring_fault finds a fault, or if the cells of a quad net cannot be divided into bays. Call
- * hf_truss_free even after a failure. */
+ * hf_truss_free even if hf_truss_ring_generate fails. */
 hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
                                  hf_messages *messages);
 

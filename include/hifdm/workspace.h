@@ -126,7 +126,7 @@ static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf
 }
 
 /* Allocates a workspace and loads LAPACK, which the solvers call. Returns HF_OK, HF_NO_MEMORY or HF_NO_LAPACK. Call
- * hf_workspace_free even after a failure. */
+ * hf_workspace_free even if hf_workspace_create fails. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
 /* Returns the number of bytes that hf_workspace_create allocates. */
 size_t hf_workspace_bytes(const hf_model *model);
