@@ -11,9 +11,9 @@
  * A model does not change after it is built, so all threads can share it.
  *
  * The model renumbers the nodes. The row of a node is its index in the model. Free nodes come first, in the order of
- * the matrix band. Rows 0 to n_free-1 are therefore the rows of the force density matrix D. Supports on a truss follow
- * the free nodes, and all other supports come last. The cables have the same order as in the scene. The matrix D is
- * stored as a lower band in the column-major layout of LAPACK. D(i,j) is band[i-j + j*(half_bandwidth+1)]. */
+ * the matrix band. Rows 0 to n_free-1 are the rows of the force density matrix D. Supports on a truss follow the free
+ * nodes, and all other supports come last. The cables have the same order as in the scene. The matrix D is stored as a
+ * lower band in the column-major layout of LAPACK. D(i,j) is band[i-j + j*(half_bandwidth+1)]. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -23,13 +23,13 @@
 
 HF_API_BEGIN
 
-/* A chain is straight if its length exceeds the distance between its supports by less than this relative limit. The sag
- * of such a chain would be below 2e-5 of its span, and its tension above 1e4 times its load. The tests of model, solve
- * and stress also pass with limits of 1e-10 and 1e-8. With a limit of 1e-11 or 1e-7, one test of the model fails
- * (straight_chains_are_found). */
+/* A chain is straight if its length exceeds the distance between its supports by less than this relative limit. A chain
+ * below this limit would have a sag below 2e-5 of its span and a tension above 1e4 times its load. The tests `model`,
+ * `solve` and `stress` also pass with limits of 1e-10 and 1e-8. With a limit of 1e-11 or 1e-7, the test
+ * straight_chains_are_found of `model` fails. */
 #define HF_STRAIGHT_EXCESS 1e-9
 
-/* Quantity that a design variable of optimize.variables sets. */
+/* Describes the quantity that a design variable of optimize.variables sets. */
 typedef struct {
     hf_vary vary;        /* quantity of the cable; HF_VARY_SUPPORT_...: displacement of the support */
     int setting;         /* row of optimize.variables */
@@ -44,8 +44,8 @@ typedef struct {
     int half_bandwidth; /* number of matrix columns of D below the diagonal */
     int n_band;         /* n_free * (half_bandwidth + 1); the entry behind the band collects the terms of supports */
     bool has_strut;     /* at least one force density is negative, so D may be indefinite */
-    /* Workspaces hold a Newton matrix. A Newton matrix requires a convex energy. It also requires a law that iterates
-     * or a call of hf_model_want_newton. */
+    /* Workspaces hold a Newton matrix. A Newton matrix requires a convex energy. The Newton matrix also requires a law
+     * that iterates or a call of hf_model_want_newton. */
     bool has_newton;
     bool by_lapack;      /* LAPACK factors the positive definite matrices (form.factor) */
     double pretension_N; /* pretension Td of the case */
@@ -68,8 +68,8 @@ typedef struct {
 
     /* The rows of optimize.variables define the design variables. By default, the design variables are the pretensions
      * of the boundary cables that end at a free node. If exactly two varied cables meet at a free node, their design
-     * variables belong to the same group, called a chain. Unequal changes within a chain push its nodes along the
-     * chain, and equal changes change its sag. */
+     * variables belong to the same group. Such a group is called a chain. Unequal changes within a chain push its nodes
+     * along the chain, and equal changes change its sag. */
     int n_variable, n_variable_group; /* numbers of design variables and of chains */
     int *variable_cable;              /* [n_variable] varied cable; -1: the variable displaces a support */
     int *variable_group;              /* [n_variable] index of the chain, 0 to n_variable_group-1 */
@@ -81,19 +81,19 @@ typedef struct {
     int n_leader;         /* number of classes, which is the number of independent design variables */
     int *variable_leader; /* [n_variable] first design variable of the class; without links, the variable itself */
 
-    /* A chain is a path of at least two cables of law length between two supports. The path passes only through free
+    /* A chain is a path of at least two cables of law length between two supports. A chain passes only through free
      * nodes that have no other cable of law length. The list of chains begins with the straight chains. The total
-     * length L* of a straight chain does not exceed the distance of its supports. The straight chains may include one
-     * path that is too short and passes through nodes where chains branch. */
+     * length L* of a straight chain does not exceed the distance between its supports. The straight chains may include
+     * one path that is too short and passes through nodes where chains branch. */
     int n_chain;       /* number of straight chains */
     int n_any_chain;   /* number of all chains */
     int *chain_start;  /* [n_any_chain + 1] first cable of each chain in chain_cable */
     int *chain_cable;  /* [chain_start[n_any_chain]] cables in their order along the chain */
     int *chain_of_row; /* [n_node] straight chain through a free node, or any chain on a truss; -1: none */
 
-    /* Supports on an elastic truss, called attachments (hf_model_attach). The flexibility F gives the displacements r =
-     * F f of the attachments under the forces f on the attachments (Eq. 15, condensed). The components of r and f are
-     * numbered 3*i + c. The following members are zero without a truss. */
+    /* Supports on an elastic truss are called attachments (hf_model_attach). The flexibility matrix F determines the
+     * displacements r = F f of the attachments under the forces f (Eq. 15, condensed). In the vectors r and f,
+     * component c of attachment i has the index 3*i + c. The following members are zero without a truss. */
     int n_attachment, n_tie;     /* number of attachments, and number of cable ends at attachments */
     int *attachment_row;         /* [n_attachment] rows n_free + i, in the order of the flexibility */
     double *flexibility_m_per_N; /* [3 n_attachment][3 n_attachment] symmetric; NULL without a truss */
@@ -108,45 +108,46 @@ typedef struct {
  * hf_model_build fails. */
 hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf_model *model, hf_messages *messages);
 
-/* Connects supports with a truss. The support node[i] of the scene becomes attachment i of n_attachment > 0. The matrix
- * flexibility_m_per_N [3 n_attachment][3 n_attachment] determines the displacements of the attachments under forces on
- * the attachments. The function copies the matrix and makes it exactly symmetric. All other supports remain fixed. A
- * cable of law length between an attachment and another support would act as a rigid rod in the truss. A cable between
- * an attachment and another support therefore gets law tension with its first tension. Call hf_model_attach at most
- * once per model, and before workspaces for the model are created.
+/* Connects supports with a truss. The support node[i] of the scene becomes attachment i. The argument n_attachment must
+ * be above 0. The matrix flexibility_m_per_N [3 n_attachment][3 n_attachment] determines the displacements of the
+ * attachments under forces on the attachments. The function copies the matrix and makes it exactly symmetric. All other
+ * supports remain fixed. A cable of law length between an attachment and another support would act as a rigid rod in
+ * the truss. A cable of law length between an attachment and another support therefore receives the law tension with
+ * its first tension. Call hf_model_attach at most once per model, and before workspaces for the model are created.
  *
- * Returns HF_OK or HF_NO_MEMORY. If an argument is invalid, returns HF_BAD_CASE with a message that contains the index
- * of the attachment. A node is invalid if it is not a support or occurs twice. The matrix is invalid if it is not
- * finite, has a negative diagonal entry, or is not symmetric to 1e-9 of its maximum absolute entry. */
+ * Returns HF_OK or HF_NO_MEMORY. If an argument is invalid, the function returns HF_BAD_CASE with a message that
+ * contains the index of the attachment. A node is invalid if it is not a support or occurs twice. The matrix is invalid
+ * if it is not finite or has a negative diagonal entry. An asymmetry above 1e-9 of the maximum absolute entry also
+ * makes the matrix invalid. */
 hf_status hf_model_attach(hf_model *model, int n_attachment, const int *node, const double *flexibility_m_per_N,
                           hf_messages *messages);
 
 /* Adds a Newton matrix to the workspaces of a net on a truss even if no law iterates. Nets with struts are excluded.
- * With this matrix, populations share one factored matrix and solve net and truss in vector lanes (solver chord). The
- * set-up of this solver is expensive compared with one form-finding. Call hf_model_want_newton before workspaces for
- * the model are created. */
+ * With the Newton matrix, the solver `chord` uses one factored matrix for whole populations and solves net and truss in
+ * vector lanes. The set-up of the solver `chord` is expensive compared with one form-finding. Call hf_model_want_newton
+ * before workspaces for the model are created. */
 void hf_model_want_newton(hf_model *model);
 
-/* Returns the force in N that is the reference for residuals and slack cables, as reference_N of a model of this scene.
- * The argument pretension_N is Td. */
+/* Returns the reference force in N for residuals and slack cables. The returned value equals reference_N of a model of
+ * this scene. The argument pretension_N is Td. */
 double hf_model_reference_N(const hf_scene *scene, double pretension_N);
 
-/* Returns the quantity that design variable i_variable sets. Without optimize.variables the quantity is
+/* Returns the quantity that design variable i_variable sets. If the case has no optimize.variables, the quantity is
  * HF_VARY_PRETENSION. */
 static inline hf_vary hf_model_vary(const hf_model *model, int i_variable)
 {
     return model->variable ? model->variable[i_variable].vary : HF_VARY_PRETENSION;
 }
 
-/* Numbers the chains of the design variables (variable_group, n_variable_group). Removes the links between the
- * variables (variable_leader, n_leader). The function is for code that sets variable_cable. Returns HF_OK or
+/* Numbers the chains of the design variables (variable_group, n_variable_group). Removes the links between the design
+ * variables (variable_leader, n_leader). Code that sets variable_cable calls this function afterwards. Returns HF_OK or
  * HF_NO_MEMORY. */
 hf_status hf_model_group_variables(hf_model *model);
 
 #define HF_VARIABLE_NAME_SIZE 320 /* the ids in tables have at most 255 bytes */
 
-/* Writes the name of a design variable, as used in tables, to text[size]. The name is the id of its cable, or the id of
- * its support followed by .x, .y, .z or .normal. */
+/* Writes the name of a design variable, as used in tables, to text[size]. The name is the id of the cable that the
+ * variable changes. For a support, the name is the id of the support, followed by .x, .y, .z or .normal. */
 void hf_model_variable_name(const hf_model *model, const hf_scene *scene, int i_variable, char *text, size_t size);
 
 /* Returns the unit of a design variable as a constant string: "N", "N/m" or "m". */

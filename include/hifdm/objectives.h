@@ -1,22 +1,24 @@
 /* objectives - objectives of a design, as blocks of residuals of a shape with exact derivatives (METHOD section 7).
  * Stability: internal. This header may change in any version.
  *
- * Each row of optimize.objective or optimize.front has one block. The weights of optimize.front are 1. Pipeline:
+ * Each row of optimize.objective or optimize.front has one block of residuals. The objectives of optimize.front have
+ * the weight 1. Pipeline:
  *
  *   hf_objectives_measure                shape in a workspace -> values of the objectives, merit
  *   hf_objectives_linearise              shape -> weighted residuals, and the data of its derivatives
  *   hf_objectives_push                   rates of the shape by a design variable -> rates of the residuals
  *   hf_objectives_nets_linearise, _push, _close   the same steps for objectives over as-built nets
  *
- * Each objective has a value in its own unit (settings.h). The norm of its residuals is this value. The merit of a
- * design is sqrt(sum (weight * value)^2).
+ * Each objective has a value in its own unit (settings.h). The value of an objective is the norm of its residuals. The
+ * merit of a design is sqrt(sum (weight * value)^2).
  *
- * The value of the objectives pull and deflection is the maximum of several quantities s. The residuals of these
- * objectives have the smooth norm (sum s^16)^(1/16) instead of the maximum. For n quantities, this norm is between
- * their maximum and n^(1/16) times their maximum. The merit uses the smooth norm. A ratio is the product of the maximum
- * tension and the maximum of 1/tension. Both maxima of a ratio are smoothed in the same way as pull and deflection. The
- * value of an objective is NaN or infinite if the shape has no such value. Examples are psi if all nodes are loose, and
- * the ratio of a set with a slack cable. A surface without a best fit also has no value. */
+ * The value of the objectives pull and deflection is the maximum of several quantities s. The residuals of pull and
+ * deflection have the smooth norm (sum s^16)^(1/16) instead of the maximum. For n quantities, the smooth norm is
+ * between their maximum and n^(1/16) times their maximum. The merit contains the smooth norm instead of the maximum. A
+ * tension ratio is the product of the maximum tension and the maximum of 1/tension. The smooth norm also replaces both
+ * maxima of a tension ratio. If a shape does not determine the value of an objective, the value is NaN or infinite. For
+ * example, psi is NaN if all nodes are loose, and a tension ratio is infinite if a cable of its set is slack. If a
+ * surface has no best fit, an objective that requires the fit has no value. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -35,7 +37,7 @@ typedef struct {
     int first_row, n_row;           /* rows of the objective among all residuals, one shape after the other */
 } hf_objective;
 
-/* Rates of change of a shape with respect to a design variable, per unit of the variable. */
+/* Contains the rates of change of a shape per unit of a design variable. */
 typedef struct {
     const double *position_m; /* [3][n_node] rates of the positions by row, including supports, m */
     const double *tension_N;  /* [n_cable] rates of the tensions, N */
@@ -43,13 +45,14 @@ typedef struct {
     const double *displacement_m;
 } hf_objectives_rate;
 
-/* Receives the shape of as-built net i_net. The argument is NULL if the as-built net has no shape. Only the fields
- * position_m, tension_N, length_m, displacement_m and loose of the workspace are valid. */
+/* Receives the shape of as-built net i_net. If the as-built net has no shape, the argument `shape` is NULL. Only the
+ * fields position_m, tension_N, length_m, displacement_m and loose of the workspace are valid. */
 typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *shape);
 
-/* The as-built nets of a design on which objectives may be measured. The nets are the load cases of the design,
- * followed by samples of its errors. The module that makes these nets (built/built_nets.h) depends on this module, so
- * it supplies the functions. A shape depends only on the design and on the number of the net. */
+/* Describes the as-built nets of a design on which objectives may be measured. The nets are the load cases of the
+ * design, followed by samples of its errors. The module built/built_nets.h makes the as-built nets and depends on this
+ * module. Therefore, that module supplies the functions of this struct. The shape of an as-built net depends only on
+ * the design and on the index of the net. */
 typedef struct hf_objectives_nets {
     int n_load_case, n_sample;         /* number of load cases and number of samples */
     const char *const *load_case_name; /* [n_load_case] names of the load cases */
@@ -58,24 +61,25 @@ typedef struct hf_objectives_nets {
     hf_status (*open)(const struct hf_objectives_nets *nets, void **room);
     /* Frees the scratch memory of a thread. */
     void (*close)(void *room);
-    /* Cuts the as-built nets for the design whose shape is in the workspace. The other functions of this struct then
-     * refer to this design. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the cables cannot be cut. */
+    /* Cuts the as-built nets for the design whose shape is in the workspace. The other functions of this struct refer
+     * to the design of the last call of `cut`. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the cables cannot be
+     * cut. */
     hf_status (*cut)(void *room, const hf_workspace *design);
-    /* Finds the shapes of the nets first to first + n - 1 and calls `take` for each net. The calls are made in the
-     * calling thread, in any order. */
+    /* Finds the shapes of n nets from index `first` on, and calls `take` for each of these nets. The function makes
+     * these calls in the calling thread and in any order. */
     void (*solve)(void *room, int first, int n, hf_objectives_take *take, void *context);
-    /* Finds the shape of one net and factors the matrix of the net in this shape. Sets *shape to the workspace, which
-     * `room` owns. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape. If the status is HF_OK,
-     * `follow` then refers to this net. */
+    /* Finds the shape of one net and factors the matrix of the net in this shape. Sets *shape to a workspace that
+     * `room` owns. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape. If the status is HF_OK, later
+     * calls of `follow` refer to this net. */
     hf_status (*linearise)(void *room, int i_net, const hf_workspace **shape);
-    /* Converts n <= HF_OBJECTIVES_AT_ONCE rates of the design to rates of the net. The array by_net [n] points to
-     * arrays that `room` owns. */
+    /* Converts n rates of the design to rates of the as-built net. The number n must not exceed HF_OBJECTIVES_AT_ONCE.
+     * The array by_net [n] points to arrays that `room` owns. */
     void (*follow)(void *room, int n, const hf_objectives_rate *by_design, hf_objectives_rate *by_net);
 } hf_objectives_nets;
 #define HF_OBJECTIVES_AT_ONCE 8 /* maximum number of rates in one call of `follow` */
 
-/* The objectives of a case, prepared for the model. The objectives do not change after creation, so threads can share
- * them. */
+/* Contains the objectives of a case, prepared for the model. The objectives do not change after creation. Threads can
+ * therefore share the objectives. */
 typedef struct {
     const hf_model *model;                      /* the net; borrowed */
     hf_surface_kind kind;                       /* kind of the target surface; used by surface and facets */
@@ -89,8 +93,8 @@ typedef struct {
     void *block;                    /* owned memory behind the arrays */
 } hf_objectives;
 
-/* The memory of one thread: scratch of a measurement, and the data that hf_objectives_push needs from the last
- * hf_objectives_linearise. */
+/* Contains the memory of one thread for the objectives. In addition to scratch memory, the struct contains the data
+ * that hf_objectives_linearise prepares for hf_objectives_push. */
 typedef struct hf_objectives_point {
     double *psi_per_m;             /* [n_inner_node] residual of psi divided by the distance; 0 for a loose node */
     double *force_N;               /* [n_support][3] scratch: forces of the net on the supports */
@@ -107,11 +111,11 @@ typedef struct hf_objectives_point {
     void *block;       /* owned memory behind the arrays */
 } hf_objectives_point;
 
-/* Creates the objectives of a case from the rows of optimize.front or optimize.objective. If there are no rows, the
- * objective is psi. The truss must already be attached to the model. The arguments `surface` and `facets` may be NULL
- * if no objective needs them. The argument `nets` is borrowed and may be NULL if all objectives are measured on the
- * design. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would be too many residuals, or if a row needs
- * data that this scene does not have. The function adds a message for each row that needs missing data. Call
+/* Creates the objectives of a case from the rows of optimize.front or optimize.objective. If the case has no rows for
+ * objectives, the objective is psi. The truss must already be attached to the model. If no objective needs them, the
+ * arguments `surface` and `facets` may be NULL. If all objectives are measured on the design, the borrowed argument
+ * `nets` may be NULL. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would be too many residuals, or if a
+ * row needs data that this scene does not have. The function adds a message for each row that needs missing data. Call
  * hf_objectives_free even if hf_objectives_create fails. */
 hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                                const hf_surface_settings *surface, const hf_facets *facets,
@@ -121,7 +125,7 @@ void hf_objectives_free(hf_objectives *objectives);
 
 /* Writes the name of objective i_objective, as used in tables, to `text`. Examples of names are objective_0_psi and,
  * for a set, objective_1_tension_edge. If the objective is measured on load cases or samples, the name ends with a
- * suffix for these. Returns the argument `text`. */
+ * suffix for the load cases or samples. Returns the argument `text`. */
 const char *hf_objectives_name(const hf_objectives *objectives, int i_objective, char text[HF_OBJECTIVE_NAME_SIZE]);
 
 /* Allocates the memory of one thread for these objectives. If `objectives` is NULL, *point is empty. Returns HF_OK or
@@ -130,22 +134,25 @@ hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objecti
 /* Frees the memory of a thread. */
 void hf_objectives_point_free(hf_objectives_point *point);
 
-/* Measures the shape in the workspace. The array value [n_objective] receives the values of the objectives, and *merit
- * receives the merit. The function overwrites the point. The function allocates memory only for a best fit. Returns
- * HF_OK or HF_NO_MEMORY. The status is also HF_OK if an objective has no value and the merit therefore has none. */
+/* Measures the shape in the workspace. The array value [n_objective] receives the values of the objectives in their own
+ * units. The argument *merit receives the merit. The function overwrites the point. The function allocates memory only
+ * for a best fit. Returns HF_OK or HF_NO_MEMORY. If an objective has no value, the merit has no value, but the status
+ * is still HF_OK. */
 hf_status hf_objectives_measure(const hf_objectives *objectives, const hf_workspace *workspace,
                                 hf_objectives_point *point, double *value, double *merit);
 
-/* Computes the weighted residuals residual [n_row] of the shape in the workspace, and the data for hf_objectives_push.
- * The norm of the residuals is the merit. If with_nets is false, the function computes only the objectives that are
- * measured on the design itself. The rows of the other objectives do not change. Returns HF_OK, HF_NO_MEMORY, or
- * HF_NOT_FINITE if an objective has no value. */
+/* Computes the weighted residuals of the shape in the workspace and writes the residuals to residual [n_row]. The
+ * function also prepares the data for hf_objectives_push. The norm of the residuals is the merit. If with_nets is
+ * false, the function computes only the objectives that are measured on the design itself. The rows of objectives that
+ * are measured on as-built nets do not change. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if an objective has no
+ * value. */
 hf_status hf_objectives_linearise(const hf_objectives *objectives, bool with_nets, const hf_workspace *workspace,
                                   hf_objectives_point *point, double *residual);
 
-/* Computes the rates rate [n_row] of the residuals of hf_objectives_linearise with respect to a design variable. The
- * argument `by` has the rates of the shape. The function does not change the rows of objectives over as-built nets. The
- * workspace must hold the same shape as in hf_objectives_linearise. */
+/* Computes the derivatives of the residuals of hf_objectives_linearise with respect to a design variable. The array
+ * rate [n_row] receives the derivatives. The argument `by` contains the rates of change of the shape. The function does
+ * not change the rows of objectives that are measured on as-built nets. The workspace must contain the same shape as in
+ * the call of hf_objectives_linearise. */
 void hf_objectives_push(const hf_objectives *objectives, const hf_workspace *workspace, hf_objectives_point *point,
                         const hf_objectives_rate *by, double *rate);
 
@@ -157,17 +164,18 @@ bool hf_objectives_is_smooth(const hf_objective_settings *objective);
 /* Returns true if an objective is measured on net i_net. */
 bool hf_objectives_are_over(const hf_objectives *objectives, int i_net);
 
-/* Finds the shape of net i_net of the most recently cut design and prepares its derivatives. Sets *shape to the
- * workspace that holds the shape of the net. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape or
- * an objective has no value in this shape. */
+/* Finds the shape of net i_net of the design that was cut last, and prepares the derivatives of this net. Sets *shape
+ * to the workspace that holds the shape of the net. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no
+ * shape or an objective has no value in this shape. */
 hf_status hf_objectives_nets_linearise(const hf_objectives *objectives, int i_net, hf_objectives_point *point,
                                        const hf_workspace **shape);
-/* Writes the rates of the residuals of net i_net with respect to a design variable to rate [n_row], without weights.
- * The argument `by` has the rates of the net. The shape must be that of the last hf_objectives_nets_linearise. */
+/* Writes the derivatives of the unweighted residuals of net i_net with respect to a design variable to rate [n_row].
+ * The argument `by` contains the rates of the as-built net. The shape must be the shape of the last call of
+ * hf_objectives_nets_linearise. */
 void hf_objectives_nets_push(const hf_objectives *objectives, int i_net, const hf_workspace *shape,
                              hf_objectives_point *point, const hf_objectives_rate *by, double *rate);
-/* Combines the rates of all nets in rate [n_row] into the rates of `residual` [n_row]. The residuals are those that
- * hf_objectives_linearise computed with `point`. */
+/* Combines the rates of all nets in the array rate [n_row] into the rates of the residuals residual [n_row]. The
+ * residuals must come from a call of hf_objectives_linearise with the same `point`. */
 void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectives_point *point, const double *residual,
                               double *rate);
 
@@ -176,14 +184,14 @@ void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectiv
 /* Returns true for the objectives surface and facets. */
 bool hf_objectives_is_on_surface(hf_figure_kind kind);
 
-/* Returns true if the value of the objective is a maximum of several quantities, or a ratio to a minimum. Such a value
- * is not smooth, so its residuals are those of a smooth approximation. */
+/* Returns true if the value of the objective is a maximum of several quantities, or a ratio to a minimum. The value of
+ * such an objective is not smooth. Its residuals are therefore the residuals of a smooth approximation. */
 bool hf_objectives_is_maximum(hf_figure_kind kind);
 
 /* Sets point->size [n_support] to the forces of the net on its supports in N. */
 void hf_objectives_pulls(const hf_model *model, const hf_workspace *workspace, hf_objectives_point *point);
-/* Computes the rates rate [n_support] of the forces of the net on its supports with respect to a design variable. The
- * argument `by` has the rates of the shape. */
+/* Computes the derivatives of the forces of the net on its supports with respect to a design variable. The array rate
+ * [n_support] receives the derivatives. The argument `by` contains the rates of change of the shape. */
 void hf_objectives_pull_rates(const hf_model *model, const hf_workspace *workspace, hf_objectives_point *point,
                               const hf_objectives_rate *by, double *rate);
 

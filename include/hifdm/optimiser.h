@@ -11,12 +11,12 @@
  *     } while (hf_optimiser_next(&optimiser)); // proposes the next one
  *
  * hf_batch_next executes the first and the last step of this loop with all threads. Each thread proposes individuals
- * and evaluates them. A generation does not change while the next generation is proposed. A program may therefore read
- * a copy of the struct hf_population that it made after hf_optimiser_tell. The copy is valid until the end of the
- * following hf_optimiser_next.
+ * and evaluates them. A generation does not change while the optimiser proposes the next generation. A program may
+ * therefore copy the struct hf_population after hf_optimiser_tell and read the copy during this time. The copy is valid
+ * until the next call of hf_optimiser_next returns.
  *
- * A new optimiser needs a file src/search/optimiser_NAME.c, a row of HF_OPTIMISER_LIST and a row of HF_OPTIMIZE_METHODS
- * in settings.h. */
+ * To add an optimiser, write a file src/search/optimiser_NAME.c and add one row to HF_OPTIMISER_LIST. Also add one row
+ * to HF_OPTIMIZE_METHODS in settings.h. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -24,11 +24,12 @@
 
 HF_API_BEGIN
 
-/* The functions of one optimiser, called by the functions below. A store keeps only the population, not the state of
- * the optimiser. A resumed run proposes the generations again whose results are in the journal. Therefore a proposal
- * must depend only on the settings, the model, the population after hf_optimiser_tell and random numbers by (seed,
- * generation, individual). The members best_psi_m and best_merit of the population hold the values of earlier
- * generations. The argument `state` holds constants, and scratch data without meaning between generations. */
+/* Contains the functions of one optimiser. The functions at the end of this header call these functions. A store keeps
+ * only the population, not the state of the optimiser. If the journal contains the results of a generation, a resumed
+ * run proposes this generation again. A proposal must therefore depend only on the settings, the model, the population
+ * after hf_optimiser_tell and random numbers. Each random number must depend only on (seed, generation, individual).
+ * The members best_psi_m and best_merit of the population contain the values of earlier generations. The argument
+ * `state` contains constants and scratch data. The scratch data have no meaning between generations. */
 typedef struct {
     /* Creates the state of the optimiser. Returns HF_OK or HF_NO_MEMORY. */
     hf_status (*create)(const hf_optimize_settings *settings, const hf_model *model, void **state);
@@ -37,16 +38,16 @@ typedef struct {
     /* Prepares the data that all proposals of the generation after `now` share. */
     void (*begin)(void *state, const hf_population *now);
     /* Proposes individual i of the next generation in the arrays of `next`. If an individual needs no evaluation, the
-     * function sets its `pending` to 0 and sets its result. Several threads call this function at the same time, each
-     * with different individuals, in any order. */
+     * function sets its result and sets its entry in `pending` to 0. Several threads call this function at the same
+     * time, for different individuals and in any order. */
     void (*propose)(void *state, const hf_population *now, hf_population *next, int i);
-    /* Selects the survivors after `now` is evaluated. The survivors are the individuals of `now` and `before` that form
-     * the generation. If this function is NULL, all individuals of `now` survive. */
+    /* Selects the survivors after all individuals of `now` have been evaluated. The survivors come from `now` and
+     * `before` and form the generation. If the pointer `survive` is NULL, all individuals of `now` survive. */
     void (*survive)(void *state, const hf_population *before, hf_population *now);
     void (*free)(void *state); /* frees the state, which may be NULL */
 } hf_optimiser_kind;
 
-/* An optimiser and its present generation. */
+/* Contains an optimiser and its present generation. */
 typedef struct {
     hf_population population;      /* the present generation */
     hf_population next;            /* internal: the arrays of the next generation, to which kind->propose writes */
@@ -56,9 +57,9 @@ typedef struct {
     bool is_fresh; /* internal: the generation has been proposed, but hf_optimiser_tell has not been called for it */
 } hf_optimiser;
 
-/* Creates an optimiser and proposes generation 0. The initial design initial [n_variable] has the values of the design
- * variables after form-finding. The optimiser borrows settings and model until hf_optimiser_free. If kind is NULL, the
- * population has bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free even if
+/* Creates an optimiser and proposes generation 0. The array initial [n_variable] contains the values of the design
+ * variables after form-finding. The optimiser borrows settings and model until hf_optimiser_free is called. If kind is
+ * NULL, the population has bounds, but no designs. Returns HF_OK or HF_NO_MEMORY. Call hf_optimiser_free even if
  * hf_optimiser_create fails. */
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
                               const hf_model *model, const double *initial, hf_optimiser *optimiser);
@@ -67,21 +68,22 @@ hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_s
  * (hf_population_rank). */
 void hf_optimiser_tell(hf_optimiser *optimiser);
 
-/* Proposes the next generation and makes it the present one. Returns false without any action if stop_reason is not
- * HF_POPULATION_RUNNING. */
+/* Proposes the next generation, which becomes the present generation. If stop_reason is not HF_POPULATION_RUNNING, the
+ * function returns false and has no effect. */
 bool hf_optimiser_next(hf_optimiser *optimiser);
 
-/* Begins the next generation for proposals by several threads. Returns false if there is no next generation
- * (hf_optimiser_next). If the function returns true, call hf_optimiser_propose for each individual, then
- * hf_optimiser_end. */
+/* Begins the next generation so that several threads can propose its individuals. Returns false if there is no next
+ * generation (hf_optimiser_next). If the function returns true, call hf_optimiser_propose for each individual and then
+ * call hf_optimiser_end. */
 bool hf_optimiser_begin(hf_optimiser *optimiser);
-/* Proposes individual i in the arrays of optimiser->next. The individual may be evaluated immediately afterwards.
- * Several threads may call this function at the same time, each with different individuals. */
+/* Proposes individual i in the arrays of optimiser->next. The individual may be evaluated as soon as this function
+ * returns. Several threads may call this function at the same time for different individuals. */
 void hf_optimiser_propose(hf_optimiser *optimiser, int i);
-/* Makes optimiser->next the present generation. All individuals of the generation must have been proposed. */
+/* Makes optimiser->next the present generation. The caller must have called hf_optimiser_propose for all individuals of
+ * the generation. */
 void hf_optimiser_end(hf_optimiser *optimiser);
 
-/* Frees the population and the state. This function does not free settings or model. */
+/* Frees the population and the state. The function frees neither the settings nor the model. */
 void hf_optimiser_free(hf_optimiser *optimiser);
 
 /* ---- the methods of a case ---- */
@@ -104,7 +106,7 @@ typedef enum {
 } hf_refine_stop;
 extern const char *const hf_refine_stop_word[5]; /* "converged", "stalled", "max_iterations", "settled", "taken" */
 
-/* Each hf_optimize_method is one row X(method, optimiser of its generations or `none`, ends_with_refine). */
+/* Each row X(method, optimiser of its generations or `none`, ends_with_refine) describes one hf_optimize_method. */
 #define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)
 
 /* Algorithms that a method uses. */

@@ -22,7 +22,7 @@
 
 HF_API_BEGIN
 
-/* The feed that illuminates a surface. */
+/* Describes the feed that illuminates a surface. */
 typedef struct {
     hf_feed_kind kind;     /* kind of the feed, not HF_FEED_AUTO */
     double position_m[3];  /* position of a point feed, or x and z of a line feed */
@@ -32,14 +32,15 @@ typedef struct {
     double scale;          /* gain = scale |N|^2 / wavelength^2, with N of (M44) */
 } hf_feed;
 
-/* Determines the feed of surface->pattern for facets at position_m [n_node][3] in m. By default the feed is at the
- * focus of the target surface and points to the middle of the aperture. The default of cos_power makes the field 10 dB
- * weaker at the edge of the facets. The kind surface->kind must not be HF_SURFACE_AUTO, and there must be at least one
- * facet. Returns the number of facets whose front side, towards +z, the feed does not illuminate. If the returned
- * number is not 0, the surface has no pattern. */
+/* Determines the feed that surface->pattern describes. The array position_m [n_node][3] contains the positions of the
+ * facet nodes in m. By default the feed is at the focus of the target surface and points to the middle of the aperture.
+ * By default, the exponent cos_power makes the field of the feed 10 dB weaker at the edge of the facets. The kind
+ * surface->kind must not be HF_SURFACE_AUTO. The surface must have at least one facet. Returns the number of facets
+ * whose front side, towards +z, the feed does not illuminate. If this number is not 0, the far field of the surface
+ * cannot be computed. */
 int hf_feed_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m, hf_feed *feed);
 
-/* A surface that a feed illuminates. */
+/* Describes a surface that a feed illuminates. */
 typedef struct {
     const hf_facets *facets;  /* facets of the surface, borrowed */
     const double *position_m; /* [n_node][3] positions */
@@ -48,7 +49,7 @@ typedef struct {
 
 #define HF_PATTERN_BLOCKS 32 /* number of blocks of facets that the threads share */
 
-/* The far field of a surface at one frequency. */
+/* Contains the far field of a surface at one frequency. */
 typedef struct {
     const hf_pattern_settings *settings; /* settings; borrowed */
     hf_pattern_surface surface;          /* the surface */
@@ -73,22 +74,22 @@ typedef struct {
 void hf_pattern_plan(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                      double frequency_Hz, hf_far_field *pattern);
 
-/* Returns the number of angles over all cuts at which each quadrature point is summed. */
+/* Returns the number of angles, over all cuts, for which hifdm sums each quadrature point. */
 int hf_pattern_angles(const hf_far_field *pattern);
 
-/* Allocates and prepares the sums at one frequency for n_thread threads. The far field borrows settings and surface.
- * Returns HF_OK or HF_NO_MEMORY. Call hf_pattern_free even if hf_pattern_create fails. */
+/* Allocates and prepares the memory for the sums at one frequency with n_thread threads. The far field borrows settings
+ * and surface. Returns HF_OK or HF_NO_MEMORY. Call hf_pattern_free even if hf_pattern_create fails. */
 hf_status hf_pattern_create(const hf_pattern_settings *settings, const hf_pattern_surface *surface, const hf_feed *feed,
                             double frequency_Hz, int n_thread, hf_far_field *pattern);
 
-/* Sums block i < HF_PATTERN_BLOCKS of the surface, with the scratch memory of thread number `room`. This function is a
- * callback for hf_parallel_each. The argument `pattern` points to the hf_far_field. The sums do not depend on the
- * thread number. */
+/* Sums block i of the surface with the scratch memory of thread `room`. The index i must be below HF_PATTERN_BLOCKS.
+ * This function is a callback for hf_parallel_each. The argument `pattern` points to a struct hf_far_field. The sums do
+ * not depend on the thread number. */
 void hf_pattern_sum_block(void *pattern, int room, int i);
 
-/* Computes the gain in dBi from the sums of all blocks. The gain is relative to isotropic radiation of the power of the
- * feed. The arrays co_dBi and cross_dBi [n_cut][n_theta] receive its components by Ludwig's third definition. The
- * function overwrites the sums of the first block. */
+/* Computes the gain in dBi from the sums of all blocks. The gain is relative to an isotropic radiator with the power of
+ * the feed. The arrays co_dBi and cross_dBi [n_cut][n_theta] receive the co-polar and the cross-polar gain by Ludwig's
+ * third definition. The function overwrites the sums of the first block. */
 void hf_pattern_finish(hf_far_field *pattern, double *co_dBi, double *cross_dBi);
 
 /* Frees the memory of the sums. */
@@ -96,15 +97,15 @@ void hf_pattern_free(hf_far_field *pattern);
 
 #define HF_PATTERN_WIDTH_STEPS 4.0 /* minimum number of angle steps in a half-power width */
 
-/* Reasons why the figures of a cut are doubtful. */
+/* These constants are the reasons why the values of a cut are doubtful. */
 typedef enum {
     HF_CUT_FINE,   /* the figures are reliable */
     HF_CUT_COARSE, /* the half-power width has fewer than HF_PATTERN_WIDTH_STEPS angle steps, so lobes are missed */
     HF_CUT_AT_END  /* the maximum is at the first or the last angle */
 } hf_cut_doubt;
 
-/* Gain, beamwidth and sidelobes of one cut of the far field. A figure is NaN if the range of angles is too small to
- * determine it. If the cut is doubtful, all figures except the maximum are NaN. */
+/* Describes the gain, the beamwidth and the sidelobes of one cut of the far field. If the range of angles is too small
+ * to determine a value, the value is NaN. If the cut is doubtful, the half-power width and the sidelobes are NaN. */
 typedef struct {
     double gain_dBi, beam_deg;   /* maximum and its angle, from a parabola through three angles */
     double half_power_width_deg; /* half-power width of the beam */
@@ -113,13 +114,13 @@ typedef struct {
     hf_cut_doubt doubt;          /* reason why figures are NaN; not stored */
 } hf_cut_figures;
 
-/* Computes the figures of a cut from its co-polar gain co_dBi [n_theta]. The angles are at equal steps from
- * theta_deg[0] to theta_deg[1]. */
+/* Computes the gain, the beamwidth and the sidelobes of a cut from its co-polar gain co_dBi [n_theta] in dBi. The
+ * angles are at equal steps from theta_deg[0] to theta_deg[1]. */
 hf_cut_figures hf_pattern_figures(int n_theta, const double theta_deg[2], const double *co_dBi);
 
 /* ---- the far field of a shape ---- */
 
-/* The figures of all cuts of a shape at all frequencies, in the order of the tables. */
+/* Contains the results of all cuts of a shape at all frequencies, in the order of the tables. */
 typedef struct {
     int n_frequency, n_cut; /* number of frequencies and number of cuts; 0: there is no pattern */
     double frequency_Hz[HF_LIST_MAX], phi_deg[HF_PATTERN_CUTS]; /* frequencies and angles of the cuts */
@@ -127,7 +128,7 @@ typedef struct {
     hf_cut_figures figure[HF_LIST_MAX * HF_PATTERN_CUTS];       /* [n_frequency][n_cut] the figures */
 } hf_pattern_summary;
 
-/* The gain of a shape at all frequencies and angles. */
+/* Contains the gain of a shape at all frequencies and angles. */
 typedef struct {
     int n_frequency, n_cut, n_theta;            /* numbers of frequencies, cuts and angles */
     double *frequency_Hz, *phi_deg, *theta_deg; /* [n_frequency], [n_cut], [n_theta] */

@@ -2,7 +2,7 @@
  * Stability: stable.
  *
  * An optimiser (optimiser.h) proposes the designs, a batch evaluates them, and a store saves them. The functions of
- * this header rank the results. The functions of this header do not determine how the next generation is made. */
+ * this header rank the results. The optimiser alone determines how the next generation is made. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -14,7 +14,8 @@
 
 HF_API_BEGIN
 
-/* Reasons why the genetic algorithm ended (optimize.stagnation_generations, optimize.generations). */
+/* These constants are the reasons why the genetic algorithm ended (optimize.stagnation_generations,
+ * optimize.generations). */
 typedef enum {
     HF_POPULATION_RUNNING,       /* the algorithm has not ended */
     HF_POPULATION_STAGNATION,    /* the best merit no longer decreases */
@@ -23,7 +24,7 @@ typedef enum {
 } hf_population_stop;
 extern const char *const hf_population_stop_word[4]; /* "running", "stagnation", "generations", "all_infeasible" */
 
-/* One generation, and figures of all generations so far. */
+/* Contains one generation and statistics of all generations so far. */
 typedef struct {
     int n_variable, n_individual; /* number of design variables and of individuals */
     int n_objective;              /* number of rows of optimize.front; 0: there are none */
@@ -40,7 +41,7 @@ typedef struct {
     hf_form_result *result;
     unsigned char *pending;                 /* [n_individual] 1: the design must be evaluated */
     double *crossover_rate, *mutation_rate; /* [n_individual] rates with which the trial was made; NaN: none */
-    /* [n_individual][2] indices of the parents in the previous generation; -1: none. The pair k, -1 means that
+    /* [n_individual][2] indices of the parents in the previous generation; -1: none. The pair (k, -1) means that
      * individual k of the previous generation was kept. */
     int *parent;
 
@@ -63,12 +64,12 @@ typedef struct {
     void *block; /* owned memory behind the arrays */
 } hf_population;
 
-/* Creates a population whose designs are all zero. The function copies the initial design initial [n_variable]. The
- * bounds are `initial` -+ range_N within [min_tension_N, max_tension_N], or those of the row of optimize.variables.
- * Design variables with the same leader change by the same step, so they have common bounds on this step. The
- * population `next` gets its own arrays for a second generation. The population `next` shares the other arrays and the
- * memory block with `population`. Returns HF_OK or HF_NO_MEMORY. Free `population` even after a failure. Do not free
- * `next`. */
+/* Creates a population whose designs are all zero. The function copies the initial design from the array initial
+ * [n_variable]. For boundary pretensions, the bounds are `initial` minus and plus range_N, within [min_tension_N,
+ * max_tension_N]. For other variables, the row of optimize.variables gives the bounds. Design variables with the same
+ * leader have common bounds on their step because they change by the same step. The population `next` has its own
+ * arrays for a second generation. The population `next` shares the other arrays and the memory block with `population`.
+ * Returns HF_OK or HF_NO_MEMORY. Free `population` even if hf_population_create fails. Do not free `next`. */
 hf_status hf_population_create(const hf_optimize_settings *settings, const hf_model *model, const double *initial,
                                hf_population *population, hf_population *next);
 /* Frees the arrays of the population and the arrays of `next`. */
@@ -77,33 +78,33 @@ void hf_population_free(hf_population *population);
 /* Copies the status and psi of each result to trial_status and trial_psi_m. */
 void hf_population_note_trials(hf_population *population);
 
-/* Replaces individual i with individual k of the previous generation. Copies its design and result, and records k as
- * the parent. */
+/* Replaces individual i with individual k of the previous generation. Copies the design and the result of individual k,
+ * and records k as the parent. */
 void hf_population_take_over(const hf_population *before, int k, hf_population *population, int i);
 
-/* Restores individuals of the previous generation. An individual is restored if it is better than the trial with the
- * same index, or if this trial was not evaluated. */
+/* Restores individuals of the previous generation. The function restores an individual if the trial with the same index
+ * is worse or was not evaluated. */
 void hf_population_keep_better(const hf_population *before, hf_population *population);
 
 /* Makes `next` the present generation. Exchanges the arrays of the two generations and increments
  * population->generation. */
 void hf_population_advance(hf_population *population, hf_population *next);
 
-/* Sets best, mean, worst, counts and stop_reason from the results of this generation. All results of the generation
- * must be available. */
+/* Uses the results of this generation to set the best, mean and worst values, the counts and stop_reason. All results
+ * of the generation must be available. */
 void hf_population_rank(const hf_optimize_settings *settings, hf_population *population);
 
-/* Returns the amount by which a result violates its constraints. The amount is 0 for a feasible result, INFINITY
- * without a shape, and result->violation otherwise. */
+/* Returns the amount by which a result violates its constraints. For a feasible result, the amount is 0. For a result
+ * without a shape, the amount is INFINITY. For all other results, the amount is result->violation. */
 double hf_population_violation(const hf_form_result *result);
 
-/* Returns the minimised figure of a feasible result. The figure is the merit, or the first objective of a Pareto
- * front. */
+/* Returns the minimised quantity of a feasible result. The quantity is the merit or, for a Pareto front, the first
+ * objective. */
 double hf_population_merit(const hf_population *population, const hf_form_result *result);
 
-/* Returns true if individual a is better than individual b. Feasible individuals are ordered by merit, or by their
- * objectives in turn. Feasible individuals come before infeasible individuals, which are ordered by violation (Deb
- * 2000). If two individuals are equal, the one with the lower index is better. */
+/* Returns true if individual a is better than individual b. Feasible individuals are ordered by merit or, for a Pareto
+ * front, by the objectives in turn. Feasible individuals come before infeasible individuals. Infeasible individuals are
+ * ordered by violation (Deb 2000). If two individuals are equal, the individual with the lower index is better. */
 bool hf_population_is_better(const hf_population *population, int a, int b);
 
 /* Returns the value within the bounds of design variable i_variable that is closest to value_N. */
@@ -113,8 +114,8 @@ static inline double hf_population_clamp(const hf_population *population, int i_
     return value_N < low ? low : value_N > high ? high : value_N;
 }
 
-/* Updates the design variables of design [n_variable] that follow a leader. A following variable is set to its value in
- * `initial` plus the step of its leader, within its own bounds. */
+/* Updates the design variables in the array design [n_variable] that follow a leader. The function sets each following
+ * variable to its value in `initial` plus the step of its leader, within the bounds of the variable. */
 void hf_population_link(const hf_population *population, const hf_model *model, double *design);
 
 HF_API_END

@@ -1,8 +1,8 @@
 /* problem - an opened case: the net with its truss, its shape, and a batch that evaluates designs.
  * Stability: stable.
  *
- * A program with its own optimiser needs only hf_problem_open and hf_problem_free in addition to the batch (see
- * tools/own_optimiser.c). The commands `hifdm run`, `check` and `evaluate` make the same struct step by step
+ * In addition to the batch, a program with its own optimiser needs only hf_problem_open and hf_problem_free (see
+ * tools/own_optimiser.c). The commands `hifdm run`, `check` and `evaluate` fill the struct hf_problem step by step
  * (src/run/problem_parts.h). Pipeline:
  *
  *   case file -> hf_case -> scene, truss -> model -> form-finding -> initial design, evaluator -> batch */
@@ -16,8 +16,8 @@
 
 HF_API_BEGIN
 
-/* An opened case. The members of a problem point to each other, so a problem must be neither moved nor copied. Only one
- * thread at a time may use a problem. */
+/* An opened case. A problem must be neither moved nor copied because its members point to each other. Only one thread
+ * at a time may use a problem. */
 typedef struct {
     hf_case settings;            /* the case */
     hf_scene scene;              /* net as the case describes it */
@@ -41,51 +41,55 @@ typedef struct {
     hf_solver solver;       /* solver that the batch uses */
 } hf_problem;
 
-/* A case whose net is in the memory of a program. Both members of this struct are borrowed. */
+/* Describes a case whose net is in the memory of a program. Both members of this struct are borrowed. */
 typedef struct {
     /* text of a case file with a section scene.import; the files that this section lists are not read */
     const char *text;
     const hf_scene_arrays *net; /* net in memory */
 } hf_problem_source;
 
-/* Opens the case file `path` with n_set overrides of the form "key=value". Without overrides, set is NULL and n_set is
- * 0. The function builds the model with truss and symmetry, finds the shape, and creates a batch of n_thread threads.
- * If n_thread is 0, the batch uses all cores. The threads share data that are made at the design `initial`
- * (hf_batch_share). The function ignores a section sweep. If model.n_variable is 0, there are no design variables.
+/* Opens the case file `path` with n_set overrides of the form "key=value". If there are no overrides, `set` is NULL and
+ * n_set is 0. The function builds the model with truss and symmetry, finds the shape, and creates a batch of n_thread
+ * threads. If n_thread is 0, the batch uses all cores. The threads share data that hf_batch_share prepares at the
+ * design `initial`. The function ignores a `sweep` section of the case. If the case has no design variables,
+ * model.n_variable is 0.
  *
- * Returns HF_OK. Returns HF_BAD_CASE with messages about all faults. Returns HF_NOT_CONVERGED or the status of an
- * ill-posed net with messages that contain the cables or nodes. The other failures are HF_MECHANISM, HF_NO_MEMORY and
- * HF_NO_LAPACK. Every failure adds an error message. If the form-finding fails, `form` and `workspace` contain its last
- * state, and there is no batch. Call hf_problem_free even if hf_problem_open fails. */
+ * Returns HF_OK. If the case has faults, the function returns HF_BAD_CASE with messages about all faults. If the
+ * form-finding fails, the function returns HF_NOT_CONVERGED or the status of an ill-posed net. The messages then
+ * contain the cables or nodes at fault. The function can also return HF_MECHANISM, HF_NO_MEMORY and HF_NO_LAPACK. If
+ * the function fails, it adds an error message. If the form-finding fails, there is no batch. The members `form` and
+ * `workspace` then contain the last state of the form-finding. Call hf_problem_free even if hf_problem_open fails. */
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *problem,
                           hf_messages *messages);
 
-/* Returns true if designs have a merit. With optimize.front, designs have no merit. */
+/* Returns true if designs have a merit. If the case has optimize.front, the designs have no merit. */
 bool hf_problem_has_merit(const hf_problem *problem);
 
-/* Writes the list of the figures of a design to `field`, in the order of the figures. Returns the number of figures.
- * The number is HF_RESULT_N_INDIVIDUAL unless designs have no merit. */
+/* Writes pointers to the descriptions of the quantities of a design to `field`. Returns the number of figures. If the
+ * designs have a merit, the number is HF_RESULT_N_INDIVIDUAL. */
 int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
-/* Returns the number of figures with derivatives with respect to the design variables. The figures with derivatives are
- * the value of each objective and, without optimize.front, the merit. If there are no objectives, the only figure with
- * derivatives is psi_m. */
+/* Returns the number of quantities that have derivatives with respect to the design variables. Each objective has
+ * derivatives. If the case has no optimize.front, the merit also has derivatives. If the case has no objectives, only
+ * psi_m has derivatives. */
 int hf_problem_n_slope(const hf_problem *problem);
-/* Writes the name of figure i_slope with derivatives to text. The name is that of its objective, "merit" or "psi_m".
- * Returns the argument `text`. */
+/* Writes the name of quantity i_slope with derivatives to `text`. The name is the name of the objective, "merit" or
+ * "psi_m". Returns the argument `text`. */
 const char *hf_problem_slope_name(const hf_problem *problem, int i_slope, char text[HF_OBJECTIVE_NAME_SIZE]);
 
-/* Computes the exact derivatives of the hf_problem_n_slope figures (METHOD section 7). The array design [n][n_variable]
- * has n designs, and result [n] has their results from hf_batch_run. The array slope [feasible
- * designs][n_slope][n_variable] receives the derivatives with respect to each single design variable. Their unit is the
- * unit of the figure per unit of the variable. The derivatives do not include the weights of the objectives. If an
- * objective is a maximum of several quantities, the derivatives are those of its smooth maximum. If a figure is 0, its
- * derivatives are NaN. The function overwrites problem->workspace. Returns HF_OK or HF_NO_MEMORY. If there are no
- * derivatives (hf_problem_has_slopes), returns HF_BAD_CASE with a message. */
+/* Computes the exact derivatives of the quantities that hf_problem_n_slope counts (METHOD section 7). The array design
+ * [n][n_variable] contains n designs, and the array result [n] contains their results from hf_batch_run. The array
+ * slope [feasible designs][n_slope][n_variable] receives the derivatives with respect to each single design variable.
+ * The unit of a derivative is the unit of the quantity divided by the unit of the design variable. The derivatives do
+ * not include the weights of the objectives. If an objective is the maximum of several quantities, the function
+ * computes the derivatives of its smooth maximum. If a quantity is 0, its derivatives are NaN. The function overwrites
+ * problem->workspace. Returns HF_OK or HF_NO_MEMORY. If the designs have no derivatives (hf_problem_has_slopes), the
+ * function returns HF_BAD_CASE with a message. */
 hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design, const hf_form_result *result,
                             double *slope, hf_messages *messages);
-/* Returns HF_OK if designs of this problem have derivatives. If designs have no derivatives, returns HF_BAD_CASE with a
- * message. There are no derivatives for nets with struts, under rule seeded, and for quantiles. */
+/* Returns HF_OK if the designs of this problem have derivatives. If the designs have no derivatives, the function
+ * returns HF_BAD_CASE with a message. Nets with struts, designs under the rule `seeded`, and quantiles have no
+ * derivatives. */
 hf_status hf_problem_has_slopes(const hf_problem *problem, hf_messages *messages);
 
 /* Frees all members of the problem. */

@@ -2,11 +2,11 @@
  * pointers.
  * Stability: stable.
  *
- * All figures of a result are rows of HF_RESULT_LIST. The list defines the members of hf_form_result and the attributes
- * in the HDF5 group of each stage. The list also defines the JSON objects of the stages and the data sets in
- * /search/population with one value per individual. The columns of `hifdm evaluate`, of the ledger of a sweep and of
- * the merged study also follow from the list. A new figure needs a row of the list and the code that computes the
- * figure. */
+ * Each row of HF_RESULT_LIST describes one quantity of a result. The list defines the members of hf_form_result and the
+ * attributes in the HDF5 group of each stage. The list also defines the JSON objects of the stages and the data sets in
+ * /search/population with one value per individual. The list also defines the columns of `hifdm evaluate`, of the
+ * ledger of a sweep and of the merged study. To add a quantity, add a row to the list and the code that computes the
+ * quantity. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -16,8 +16,8 @@
 
 HF_API_BEGIN
 
-/* X(name, value, word stored in files): reasons why a form-finding stopped. Files contain the values, so never renumber
- * them. */
+/* Each row X(name, value, word stored in files) defines a reason why a form-finding stopped. Files contain the values.
+ * Therefore, never renumber the values. */
 #define HF_STOP_REASON_LIST(X)                                                                                         \
     X(NONE, 0, "none")                                                                                                 \
     X(DIRECT, 1, "direct")                 /* no law changes a force density, so one solve is exact */                 \
@@ -36,8 +36,8 @@ typedef enum {
 /* Returns the word of a stop reason as a constant string. Returns "unknown" for other values. */
 const char *hf_stop_reason_word(int reason);
 
-/* X(name, value, word stored in files): reasons why the coupling of the net with an elastic truss ended. Files contain
- * the values, so never renumber them. */
+/* Each row X(name, value, word stored in files) defines a reason why the coupling of the net with an elastic truss
+ * ended. Files contain the values. Therefore, never renumber the values. */
 #define HF_COUPLING_STOP_LIST(X)                                                                                       \
     X(NONE, 0, "none")                     /* there is no truss */                                                     \
     X(CONVERGED, 1, "converged")           /* no attachment moves by more than coupling.tof_m */                       \
@@ -52,11 +52,11 @@ typedef enum {
 #undef HF_COUPLING_STOP_ENUM
 } hf_coupling_stop;
 
-/* Returns the word of a reason why a coupling ended, as a constant string. Returns "unknown" for other values. */
+/* Returns the word for the reason why a coupling ended, as a constant string. Returns "unknown" for other values. */
 const char *hf_coupling_stop_word(int stop);
 
-/* X(name, value, word stored in files, description for the user): one row for each certification status of the error
- * bounds of a result (METHOD section 3). Files contain the values, so never renumber them. */
+/* Each row X(name, value, word stored in files, description for the user) defines a certification status of the error
+ * bounds of a result (METHOD section 3). Files contain the values. Therefore, never renumber the values. */
 #define HF_BOUND_REASON_LIST(X)                                                                                        \
     X(NONE, 0, "none", "no certified bound was computed")                                                              \
     X(CERTIFIED, 1, "certified", "no equilibrium is farther away")                                                     \
@@ -70,15 +70,16 @@ const char *hf_coupling_stop_word(int stop);
     X(DEPENDENT_LENGTHS, 8, "dependent_lengths", "prescribed lengths depend on each other")                            \
     X(LOOSE, 9, "loose", "no taut cable holds some node, so its position is not unique")
 
-/* Certification status of the error bounds: certified, or the reason why they are not. */
+/* The certification status states that the error bounds are certified, or why they are not. */
 typedef enum {
 #define HF_BOUND_REASON_ENUM(name, value, ...) HF_BOUND_##name = value,
     HF_BOUND_REASON_LIST(HF_BOUND_REASON_ENUM)
 #undef HF_BOUND_REASON_ENUM
 } hf_bound_reason;
 
-/* The two functions return the word of a bound reason, and its meaning, as constant strings. Both functions return
- * "unknown" for other values. */
+/* The function hf_bound_reason_word returns the word of a bound reason as a constant string. The function
+ * hf_bound_reason_meaning returns the meaning of a bound reason as a constant string. For other values,
+ * hf_bound_reason_word and hf_bound_reason_meaning return "unknown". */
 const char *hf_bound_reason_word(int reason);
 const char *hf_bound_reason_meaning(int reason);
 
@@ -92,10 +93,11 @@ const char *hf_bound_reason_meaning(int reason);
  *   .units        unit; omitted: none
  *   .description  description of the data set; omitted: there is no data set
  *
- * HDF5 attributes and columns of the ledger have the order of the list. JSON lists the figures of a coupling between
- * places 4 and 5. The REAL figures are NaN unless the status is HF_OK, HF_NOT_CONVERGED or the status of a violated
- * limit. In the result of a design (hf_evaluate), psi_m and merit are NaN unless the status is HF_OK. If a design has
- * no shape (hf_status_has_shape), its tension ratios and its violation are also NaN. Notes on single figures:
+ * HDF5 attributes and columns of the ledger have the order of the list. In JSON, the quantities of a coupling follow
+ * the rows with place 4 and precede the rows with place 5. The REAL quantities have values only if the status is HF_OK,
+ * HF_NOT_CONVERGED or the status of a violated limit. For all other statuses, the REAL quantities are NaN. If the
+ * status of a design (hf_evaluate) is not HF_OK, psi_m and merit are NaN. If a design has no shape
+ * (hf_status_has_shape), its tension ratios and its violation are NaN. Notes on single figures:
  *
  *   culprit              HF_COLLAPSED, HF_NOT_FINITE: a cable; HF_SINGULAR: a row of D; HF_STRAIGHT_CHAIN: a chain;
  *                        HF_NOT_CONVERGED: the cable whose rounding prevents convergence; HF_OK and
@@ -153,7 +155,7 @@ const char *hf_bound_reason_meaning(int reason);
     X(int, n_loaded_chain, INT, .json = 5, .key = "loaded_straight_chains",                                            \
       .description = "chains under lateral load: their tensions mean nothing")
 
-/* The corresponding list for the figures of the coupling of the net with its truss. */
+/* This list describes the quantities of the coupling of the net with its truss. */
 #define HF_COUPLING_LIST(X)                                                                                            \
     X(hf_coupling_stop, stop_reason, COUPLING_STOP, .json = 4, .description = "how the coupling ended")                \
     X(int, iterations, INT, .json = 1, .description = "form-findings of the loop, or steps in one matrix")             \
@@ -165,12 +167,12 @@ const char *hf_bound_reason_meaning(int reason);
 
 #define HF_RESULT_MEMBER(type, member, ...) type member;
 
-/* The figures of a coupling. The figures of a coupling are all zero without a truss. */
+/* The figures of a coupling. If the case has no truss, all members of this struct are zero. */
 typedef struct {
     HF_COUPLING_LIST(HF_RESULT_MEMBER)
 } hf_coupling_result;
 
-/* The figures of a form-finding or of a design. */
+/* Contains the quantities of a form-finding or of a design. */
 typedef struct {
     HF_RESULT_LIST(HF_RESULT_MEMBER)
     hf_coupling_result coupling;          /* figures of the coupling with the truss */
@@ -197,14 +199,14 @@ typedef enum {
     HF_RESULT_REFINE_STOP,
     HF_RESULT_SOLVER,
     HF_RESULT_SEARCH_STOP,
-    /* The following types are in no list. */
+    /* No list contains the following types. */
     HF_RESULT_UINT64,
     HF_RESULT_CHARS,
     HF_RESULT_SURFACE,
     HF_RESULT_FEED
 } hf_result_kind;
 
-/* One row of a list at run time. */
+/* Describes one row of a list at run time. */
 typedef struct {
     const char *name, *key, *units, *description; /* texts of the row; key NULL: the same as name; units NULL: none */
     hf_result_kind kind;                          /* type of the stored value */
@@ -212,7 +214,7 @@ typedef struct {
     size_t offset, size;  /* offset and size in bytes of the member in its struct */
 } hf_result_field;
 
-/* Initialises an hf_result_field from a row for a member of `owner`. */
+/* Initialises an hf_result_field from a row that describes a member of the struct `owner`. */
 #define HF_RESULT_FIELD(owner, type, member_, kind_, ...)                                                              \
     {.name = #member_,                                                                                                 \
      .kind = HF_RESULT_##kind_,                                                                                        \
@@ -221,7 +223,8 @@ typedef struct {
      __VA_ARGS__},
 
 #define HF_RESULT_COUNT(...) +1
-/* Number of rows of each of the two lists, and number of rows with a place among the figures of one individual. */
+/* These constants are the numbers of rows of the two lists. The constant HF_RESULT_N_INDIVIDUAL is the number of rows
+ * with a place among the quantities of one individual. */
 enum {
     HF_RESULT_N = 0 HF_RESULT_LIST(HF_RESULT_COUNT),
     HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),
@@ -232,25 +235,25 @@ enum { HF_RESULT_JSON_COUNTS = 5 }; /* first JSON place of the counts, which fol
 extern const hf_result_field hf_result_field_of[HF_RESULT_N];     /* rows of HF_RESULT_LIST for hf_form_result */
 extern const hf_result_field hf_coupling_field_of[HF_COUPLING_N]; /* rows of HF_COUPLING_LIST for hf_coupling_result */
 
-/* Returns the JSON name of a figure. */
+/* Returns the JSON name of a quantity. */
 const char *hf_result_key(const hf_result_field *field);
 
-/* Writes the rows with a place among the figures of one individual to `field`, in the order of these places. The rows
- * are constants of the library. */
+/* Writes pointers to the rows with a place among the quantities of one individual to `field`, in the order of these
+ * places. The rows are constants of the library. */
 void hf_result_list_individual(const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
 /* ---- History of the iterations ---- */
 
-/* Figures of each iteration of the coupling. The caller owns the arrays, which have `capacity` items each. Iterations
- * beyond `capacity` are not recorded. */
+/* Contains the quantities of each iteration of the coupling. The caller owns the arrays. Each array has space for
+ * `capacity` items. The arrays do not record iterations beyond `capacity`. */
 typedef struct {
     int capacity, n; /* capacity of the arrays, and number of recorded iterations */
     /* [capacity] step |F f - r|, psi, and maximum deflection of the attachments, m */
     double *step_m, *psi_m, *deflection_max_m;
 } hf_coupling_history;
 
-/* Figures of each iteration of a form-finding. The caller owns the arrays, which have `capacity` items each. Iterations
- * beyond `capacity` are not recorded. */
+/* Contains the quantities of each iteration of a form-finding. The caller owns the arrays. Each array has space for
+ * `capacity` items. The arrays do not record iterations beyond `capacity`. */
 typedef struct {
     int capacity, n; /* capacity of the arrays, and number of recorded iterations */
     /* [capacity] figures of HF_RESULT_LIST of each iteration */

@@ -7,7 +7,7 @@
  *        -> load cases -> samples with errors -> result file
  *
  * A run prints nothing and keeps no state outside its arguments. One process may execute any number of runs, one after
- * the other or at the same time in different threads. */
+ * another or at the same time in different threads. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -21,11 +21,12 @@ HF_API_BEGIN
 
 #define HF_OUTPUT_SIZE 4096 /* size in bytes of the path of a result file */
 
-/* The phases of a run: form-finding, genetic algorithm, Levenberg-Marquardt and samples of as-built nets. */
+/* A run has the phases form-finding, genetic algorithm, Levenberg-Marquardt and samples of as-built nets. */
 typedef enum { HF_RUN_FORM, HF_RUN_SEARCH, HF_RUN_REFINE, HF_RUN_TOLERANCE } hf_run_phase;
 extern const char *const hf_run_phase_word[4]; /* "form", "search", "refine", "tolerance" */
 
-/* The progress of a run. Members that do not belong to the phase are 0, except best_psi_m and merit, which are NaN. */
+/* The progress of a run. If the members best_psi_m and merit do not belong to the phase, they are NaN. All other
+ * members that do not belong to the phase are 0. */
 typedef struct {
     hf_run_phase phase;          /* phase of the run */
     int generation, generations; /* search: number of finished generations, and maximum number of generations */
@@ -37,19 +38,21 @@ typedef struct {
     long samples, samples_all;   /* tolerance: number of finished samples, and number of all samples */
     /* tolerance, after all samples: scale factor of the errors whose yield is being determined; otherwise 0 */
     double sigma_scale;
-    /* Refinement: number of finished steps, maximum number of steps, first step of this process, and merit of the best
-     * design. The merit is NaN if it is psi. The member best_psi_m belongs to the same design. */
+    /* During the refinement, step and max_steps are the number of finished steps and the maximum number of steps. The
+     * member first_step is the first step of this process. The member `merit` is the merit of the best design. If psi
+     * is the merit, the member `merit` is NaN. The member best_psi_m also belongs to the best design. */
     int step, max_steps, first_step;
     double merit;
-    /* Refinement of a Pareto front, otherwise 0: number of finished points, number of all points, and steps of the
-     * searches for them. */
+    /* During the refinement of a Pareto front, these members are the number of finished points, the number of all
+     * points, and the number of steps for all points. In all other phases, these members are 0. */
     int points, points_all;
     long steps;
 } hf_run_progress;
 
-/* Receives the progress of a run. The callback is called at the start of the form-finding, of the refinement and of the
- * samples. The callback is also called after each generation has been stored, after each step of Levenberg-Marquardt,
- * and after each block of samples. Only one thread at a time calls the callback, but the thread may change. */
+/* Receives the progress of a run. The run calls the callback at the start of the form-finding, of the refinement and of
+ * the samples. The run also calls the callback after each stored generation, after each step of Levenberg-Marquardt,
+ * and after each block of samples. Only one thread at a time calls the callback. Different calls may come from
+ * different threads. */
 typedef void hf_run_observer(void *context, const hf_run_progress *progress);
 
 /* The input of a run. Every member except case_path may be zero. */
@@ -63,7 +66,7 @@ typedef struct {
     const char *point;
 } hf_run_input;
 
-/* The result file of a run. */
+/* Describes the result file of a run. */
 typedef struct {
     const char *path;  /* path of the result file; NULL: the name of the case with .h5 in the current folder */
     bool no_file;      /* write no file, because only the summary is needed */
@@ -71,12 +74,12 @@ typedef struct {
     int argc;          /* number of command line arguments, for the provenance */
     char *const *argv; /* [argc] command line arguments */
     /* If this member is NULL, the result file gets its final name before hf_run_case returns. If this member is not
-     * NULL, *unsettled is set to the store for which the caller must call hf_store_settle, in any thread. If there is
-     * no such store, *unsettled is set to NULL. */
+     * NULL, the function sets *unsettled to a store. The caller must then call hf_store_settle for this store, in any
+     * thread. If no store must be settled, the function sets *unsettled to NULL. */
     hf_store **unsettled;
 } hf_run_output;
 
-/* Threads, stop flag and observer of a run. */
+/* Contains the threads, the stop flag and the observer of a run. */
 typedef struct {
     int threads;                                 /* number of threads; 0: all cores */
     const volatile sig_atomic_t *stop_requested; /* flag; *stop_requested != 0 interrupts the run; NULL: none */
@@ -84,7 +87,7 @@ typedef struct {
     void *observer_context;                      /* first argument of the observer */
 } hf_run_control;
 
-/* The part of a study or of a set of samples that a run computes. */
+/* Selects the part of a study or of a set of samples that a run computes. */
 typedef struct {
     bool of_sweep;     /* run one point of the sweep of the case; false: reject a case with a section sweep */
     bool of_tolerance; /* reject a case without a section tolerance */
@@ -93,7 +96,7 @@ typedef struct {
     int task, tasks;
 } hf_run_part;
 
-/* The request that describes a run. All pointers are borrowed until hf_run_case returns. */
+/* Describes a run for the function hf_run_case. All pointers are borrowed until hf_run_case returns. */
 typedef struct {
     hf_run_input input;     /* case, overrides, seed */
     hf_run_output output;   /* result file */
@@ -101,13 +104,13 @@ typedef struct {
     hf_run_part part;       /* point of a sweep, task; all zero: the whole case */
 } hf_run_request;
 
-/* Runs a case and stores its result. The buffer `output` receives the path of the result file, or "" if no file was
- * written. The struct *summary receives the figures of the run.
+/* Runs a case and stores its result. The buffer `output` receives the path of the result file. If the function wrote no
+ * file, the buffer receives an empty string. The struct *summary receives the results of the run.
  *
- * Returns HF_OK on success. On failure the function returns another status and adds messages. If the status is
+ * Returns HF_OK on success. If the function fails, it returns another status and adds messages. If the status is
  * HF_NOT_CONVERGED or HF_NO_FEASIBLE, the function still writes the file. If the status is HF_INTERRUPTED because
  * *stop_requested was set, the same request resumes the run. If a finished result of this case exists, the function
- * does not compute it again and returns its status. */
+ * returns the status of this result without a new computation. */
 hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char output[HF_OUTPUT_SIZE],
                       hf_messages *messages);
 

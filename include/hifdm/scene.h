@@ -19,7 +19,7 @@ typedef enum { HF_GROUP_INNER, HF_GROUP_BOUNDARY } hf_group; /* group of a cable
 extern const char *const hf_role_word[3];  /* "support", "inner", "edge" */
 extern const char *const hf_group_word[2]; /* "inner", "boundary" */
 
-/* Nodes and cables of a net. */
+/* Describes the nodes and cables of a net. */
 typedef struct {
     int n_node, n_cable;  /* numbers of nodes and cables */
     double *position_m;   /* [n_node][3] target positions; for supports also the actual positions */
@@ -45,27 +45,28 @@ typedef struct {
     void *block, *text, *set_block; /* owned memory behind all arrays above except `facet`, which is owned separately */
 } hf_scene;
 
-/* Allocates a scene of this size with all values zero. The arguments with_load, with_EA and with_line state whether
- * load_N, EA_N and the line numbers exist. Returns HF_OK or HF_NO_MEMORY. Call hf_scene_free even if hf_scene_allocate
- * fails. */
+/* Allocates a scene with n_node nodes and n_cable cables. All values of the scene are zero. The arguments with_load,
+ * with_EA and with_line state whether load_N, EA_N and the line numbers exist. Returns HF_OK or HF_NO_MEMORY. Call
+ * hf_scene_free even if hf_scene_allocate fails. */
 hf_status hf_scene_allocate(hf_scene *scene, int n_node, int n_cable, bool with_load, bool with_EA, bool with_line);
 
-/* Checks the rules that every scene must satisfy, whether it is generated or read. A scene needs a free node, an inner
- * node and a support, and all numbers must be finite. Each cable needs two different ends and a length. An elastic
- * cable also needs EA and an unstressed length. A path of cables must lead from every free node to a support. The
- * function checks the cables only if the nodes have no faults. The function writes one message with file, line and id
- * for each fault. Beyond HF_FAULT_MAX faults it writes only their number. Returns HF_OK, HF_BAD_CASE or
- * HF_NO_MEMORY. */
+/* Checks the rules that every generated or imported scene must satisfy. A scene needs a free node, an inner node and a
+ * support. All numbers of the scene must be finite. Each cable needs two different ends and a length. An elastic cable
+ * also needs EA and an unstressed length. A path of cables must lead from every free node to a support. If the nodes
+ * have faults, the function does not check the cables. The function writes one message with file, line and id for each
+ * fault. If there are more than HF_FAULT_MAX faults, the function writes only the number of the remaining faults.
+ * Returns HF_OK, HF_BAD_CASE or HF_NO_MEMORY. */
 hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages);
 
 #define HF_SCENE_LOCATION_SIZE 1324 /* size for a path, a line and an id of a table; a longer id is truncated */
 
-/* Writes the beginning of a message about a node or cable to text[size]. Examples of such a text are "nodes.csv:7: node
- * 'a'" and "cables.csv:7: cable 'a'". If the scene has no file, the text is "scene: node 'a'". */
+/* Writes the beginning of a message about a node or cable to text[size]. For example, the function writes "nodes.csv:7:
+ * node 'a'" or "cables.csv:7: cable 'a'". If the scene has no file, the function writes, for example, "scene: node
+ * 'a'". */
 void hf_scene_location(const hf_scene *scene, bool is_cable, int index, char *text, size_t size);
 
-/* Counts a fault of a node or cable in *n_fault and adds the message "<location> <what>". Beyond HF_FAULT_MAX faults
- * the function only counts. */
+/* Increments the number of faults *n_fault and adds the message "<location> <what>" about a node or cable. After
+ * HF_FAULT_MAX faults, the function only counts faults and adds no messages. */
 void hf_scene_fault(const hf_scene *scene, bool is_cable, int index, int *n_fault, const char *what,
                     hf_messages *messages);
 
@@ -73,12 +74,13 @@ void hf_scene_fault(const hf_scene *scene, bool is_cable, int index, int *n_faul
 double hf_scene_length_at_target(const hf_scene *scene, int i_cable);
 
 /* Returns the first difference between two nets as a constant string. The function compares nodes, their roles and
- * target positions, cables, and the ends of cables. Returns NULL if the two nets have none of these differences. */
+ * target positions, cables, and the ends of cables. Returns NULL if the function finds no difference between the two
+ * nets. */
 const char *hf_scene_difference(const hf_scene *a, const hf_scene *b);
 
-/* Returns true if the numbers a [n] and b [n] are equal up to rounding. The tolerance is 1e-9 of the maximum absolute
- * value of a. The tolerance is needed because results of two machines differ by rounding. If one array is NULL, the
- * arrays are equal only if the other one is also NULL. */
+/* Returns true if the arrays a [n] and b [n] are equal up to rounding. The tolerance is 1e-9 of the maximum absolute
+ * value in the array `a`. A tolerance is necessary because results of two machines differ by rounding. If one array is
+ * NULL, the arrays are equal only if the other array is also NULL. */
 bool hf_scene_numbers_agree(size_t n, const double *a, const double *b);
 
 /* Frees all memory of the scene. */
