@@ -7,8 +7,8 @@
 
 HF_API_BEGIN
 
-/* The arrays that define a net. All members of this struct are borrowed. If a member is NULL, it is absent, or it has
- * the default that a table without this column has. */
+/* Contains the arrays that define a net. The struct does not own the arrays behind its members. A NULL member has the
+ * same effect as a missing column in a table of an imported net. */
 typedef struct {
     int n_node;                  /* number of nodes, at least 1 */
     const double *position_m;    /* [n_node][3] target positions; for supports also the actual positions */
@@ -28,10 +28,11 @@ typedef struct {
     const int *set_cable;        /* [set_start[n_set]] cables, counted from 0, in ascending order in each set */
 } hf_scene_arrays;
 
-/* Copies the arrays into a scene. The array group_EA_N, indexed by hf_group, contains the axial stiffness in N of
- * cables that have no EA_N of their own. The value 0 means that there is none. Returns HF_OK or HF_NO_MEMORY. If the
- * arrays have faults, returns HF_BAD_CASE with messages that contain the node, cable or set. The caller must then check
- * the scene (hf_scene_check). Call hf_scene_free even if hf_scene_from_arrays fails. */
+/* Copies the arrays into a scene. The array group_EA_N [2] contains, for each hf_group, the axial stiffness in N of
+ * cables without their own EA_N. The value 0 means that no axial stiffness is given. Returns HF_OK or HF_NO_MEMORY. If
+ * the arrays have faults, the function returns HF_BAD_CASE with messages that contain the node, cable or set. After a
+ * call of this function, the caller must check the scene (hf_scene_check). Call hf_scene_free even if
+ * hf_scene_from_arrays fails. */
 hf_status hf_scene_from_arrays(const hf_scene_arrays *arrays, const double group_EA_N[2], hf_scene *scene,
                                hf_messages *messages);
 

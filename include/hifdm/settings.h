@@ -1,8 +1,8 @@
 /* settings - all settings of the library as plain values.
  * Stability: stable.
  *
- * hf_config_load sets the values from a case file, and `hifdm schema` describes their keys. A program may also set the
- * values itself. */
+ * The function hf_config_load reads these settings from a case file. The command `hifdm schema` describes their keys. A
+ * program may also set these values without a case file. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -11,41 +11,44 @@
 
 HF_API_BEGIN
 
-/* The following enumerations are choices in a case file, each with its key. `hifdm schema` describes the values.
+/* Each of the following enumerations contains the choices for one key of a case file. `hifdm schema` describes the
+ * values.
  *
- * The method of the form-finding (form.method). */
+ * The key form.method selects the method of the form-finding. */
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
-/* The method of the optimisation (optimize.method): X(enumerator, word). HF_OPTIMISER_LIST contains one row for each
- * method, with the optimiser that it uses. */
+/* Each row X(enumerator, word) defines a method of the optimisation (optimize.method). Each row of HF_OPTIMISER_LIST
+ * states the optimiser of one method. */
 #define HF_OPTIMIZE_METHODS(X) X(GA, "ga") X(LM, "lm") X(GA_LM, "ga+lm")
 #define HF_OPTIMIZE_ENUMERATOR(name, word) HF_OPTIMIZE_##name,
-/* The method of the optimisation (optimize.method). */
+/* The key optimize.method selects the method of the optimisation. */
 typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
 #undef HF_OPTIMIZE_ENUMERATOR
-/* Code that factors the positive definite matrices of form-finding: own code or LAPACK (form.factor). */
+/* The key form.factor selects whether hifdm or LAPACK factors the positive definite matrices of form-finding. */
 typedef enum { HF_FACTOR_OWN, HF_FACTOR_LAPACK } hf_factor;
-/* The solver of the designs (optimize.solver). */
+/* The key optimize.solver selects the solver of the designs. */
 typedef enum { HF_SOLVER_AUTO, HF_SOLVER_CHORD, HF_SOLVER_NEWTON, HF_SOLVER_FIXED_POINT } hf_solver;
-/* Tensions are given, or computed so that every node is held at its target position (form.prestress). */
+/* The key form.prestress states whether the tensions are given or computed so that they hold every node at its target
+ * position. */
 typedef enum { HF_PRESTRESS_GIVEN, HF_PRESTRESS_EXACT } hf_prestress;
-/* The stopping rule of the form-finding (form.stop). */
+/* The key form.stop selects the stopping rule of the form-finding. */
 typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
-/* Meaning of the pretension of a boundary cable in a design (optimize.rule, METHOD section 7). */
+/* The key optimize.rule selects the meaning of the pretension of a boundary cable in a design (METHOD section 7). */
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
-/* Scheme that couples net and truss (coupling.scheme, METHOD section 8). */
+/* The key coupling.scheme selects the scheme that couples net and truss (METHOD section 8). */
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
-/* Use of Levenberg-Marquardt for comparison after method ga (optimize.refine). */
+/* The key optimize.refine states whether Levenberg-Marquardt runs for comparison after the method `ga`. */
 typedef enum { HF_REFINE_AUTO, HF_REFINE_TRUE, HF_REFINE_FALSE } hf_refine_choice;
-/* Method by which the genetic algorithm makes children (optimize.variation). */
+/* The key optimize.variation selects the method by which the genetic algorithm makes children. */
 typedef enum { HF_VARIATION_DIFFERENCE, HF_VARIATION_CHAIN } hf_variation;
-/* Individuals that a result file keeps (optimize.store). */
+/* The key optimize.store selects the individuals that a result file keeps. */
 typedef enum { HF_KEEP_ALL, HF_KEEP_BEST, HF_KEEP_EVERY } hf_keep;
-/* The kind of the target surface (surface.kind). */
+/* The key surface.kind selects the kind of the target surface. */
 typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABOLOID } hf_surface_kind;
-/* Mirror planes that link design variables (optimize.symmetry). */
+/* The key optimize.symmetry selects the mirror planes that link design variables. */
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
-/* Quantity that a row of optimize.variables varies, for each cable of its set or for the supports at these cables. */
+/* A row of optimize.variables varies one of these quantities for each cable of its set, or for the supports at these
+ * cables. */
 typedef enum {
     HF_VARY_TENSION,           /* tension of a cable, N; the cable gets law tension */
     HF_VARY_FORCE_DENSITY,     /* force density of a cable, N/m; the cable gets law force_density */
@@ -56,10 +59,12 @@ typedef enum {
     HF_VARY_SUPPORT_XYZ,       /* displacement of a support along x, y and z: three design variables, m */
     HF_VARY_PRETENSION /* pretension of a boundary cable under optimize.rule, N; not available in optimize.variables */
 } hf_vary;
-/* Design variables of a row that change by the same step: none, all, or those at mirrored positions (optimize.link). */
+/* The key optimize.link selects which design variables of a row change by the same step: none, all, or the variables at
+ * mirrored positions. */
 typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 
-/* Figure that a row of optimize.objective or optimize.front measures. A figure is at least zero and is minimised. */
+/* A row of optimize.objective or optimize.front measures one of these quantities. Every quantity of an objective is at
+ * least zero and is minimised. */
 typedef enum {
     HF_FIGURE_PSI,        /* psi: RMS distance of the inner nodes from their target positions, m */
     HF_FIGURE_SURFACE,    /* RMS distance of the inner nodes from the target surface, m */
@@ -73,27 +78,28 @@ typedef enum {
     HF_FIGURE_RATIO,      /* ratio of maximum to minimum tension in the set */
     HF_FIGURE_GAIN        /* square root of the part of the gain that is lost in the direction of the beam */
 } hf_figure_kind;
-/* Direction in which the distance to a surface is measured. */
+/* Selects the direction in which the distance to a surface is measured. */
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
-/* Surface to which the distance is measured: the target surface, or its best fit to the shape. */
+/* The distance is measured to the target surface or to its best fit to the shape. */
 typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit;
 
-/* Shapes on which an objective is measured: the design, or samples of the errors of its as-built net. */
+/* An objective is measured on the design or on samples of the errors of its as-built net. */
 typedef enum { HF_OVER_DESIGN, HF_OVER_SAMPLES } hf_over;
-/* Figure that combines several shapes: the root mean square or the maximum. */
+/* The root mean square or the maximum combines the values of several shapes. */
 typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
 
-/* Quantity that a row of optimize.limits bounds. */
+/* A row of optimize.limits bounds one of these quantities. */
 typedef enum {
     HF_LIMIT_TENSION,   /* tension of each cable of the set, N */
     HF_LIMIT_RATIO,     /* ratio of maximum to minimum tension in the set */
     HF_LIMIT_DEFLECTION /* deflection of each attachment, m */
 } hf_limit_kind;
 
-/* Words of the choices in a case file, indexed by the enumerations of this header. The last entry of each array is
- * NULL. Other choices have their words in their rows of the table of keys (config.h). hf_figure_kind_unit contains the
- * units of the figures, without a NULL; "" means dimensionless. hf_adjust_figure_word contains the words of
- * adjust.figure, from HF_FIGURE_PSI to HF_FIGURE_FACETS. The lists are rows X(array, size, words ...). */
+/* Each array contains the words of a choice in a case file, indexed by an enumeration of this header. The last entry of
+ * each array is NULL. For all other choices, the table of keys (config.h) contains the words. The array
+ * hf_figure_kind_unit contains the units of the measured quantities and does not end with NULL. An empty unit means
+ * that the quantity is dimensionless. The array hf_adjust_figure_word contains the words of adjust.figure, from
+ * HF_FIGURE_PSI to HF_FIGURE_FACETS. Each row X(array, size, words ...) defines one array of words. */
 #define HF_SETTINGS_WORDS(X)                                                                                           \
     X(hf_method_word, 6, "hifdm", "iterative_fdm", "fdm", "newton", "auto")                                            \
     X(hf_stop_rule_word, 3, "residual", "rms_change")                                                                  \
@@ -123,17 +129,17 @@ HF_SETTINGS_WORDS(HF_SETTINGS_EXTERN)
 #undef HF_SETTINGS_EXTERN
 extern const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1];
 
-/* Size in bytes of the path of a case, a study, or a table of a net or truss. A longer path is rejected. */
+/* Defines the size in bytes of the path of a case, a study, or a table of a net or truss. A longer path is rejected. */
 #define HF_PATH_SIZE 1024
 
-/* Point of a Pareto front that a run uses as its result instead of a search. */
+/* Describes the point of a Pareto front that a run uses as its result instead of a search. */
 typedef struct {
     int point;               /* number of the point, counted from 1; 0: no point is used */
     char path[HF_PATH_SIZE]; /* path of the result file with the front, as the user gave it */
     char sha256[65];         /* hexadecimal digest of the design */
 } hf_front_origin;
 
-/* Words of hf_tolerance_measure in a case file. The last entry is NULL. */
+/* Contains the words of hf_tolerance_measure in a case file. The last entry is NULL. */
 extern const char *const hf_tolerance_measure_word[];
 
 #define HF_SET_NAME_SIZE 64 /* size in bytes of the name of a set of cables, including its NUL */
@@ -148,7 +154,7 @@ typedef struct {
     hf_link link;               /* design variables that are linked */
 } hf_variable_settings;
 
-/* One row of optimize.objective or optimize.front. Objectives of optimize.front have no weight. */
+/* Describes one row of optimize.objective or optimize.front. Objectives of optimize.front have no weight. */
 typedef struct {
     hf_figure_kind figure;      /* measured figure */
     char set[HF_SET_NAME_SIZE]; /* cables of the figures tension, length, evenness, mass and ratio; "": all */
@@ -177,15 +183,15 @@ typedef struct {
 #define HF_FRONT_POINTS_MAX 512    /* maximum of optimize.front_points */
 #define HF_OBJECTIVE_NAME_SIZE 112 /* size in bytes of the name of an objective: "objective_15_deflection_" and a set */
 
-/* The coupling of the net with an elastic truss (section coupling). The coupling settings are not used without a
- * truss. */
+/* Contains the settings of the coupling of the net with an elastic truss (section `coupling`). If the case has no
+ * truss, the coupling settings have no effect. */
 typedef struct {
     double tof_m;              /* tolerance: maximum displacement of an attachment in an iteration */
     hf_coupling_scheme scheme; /* scheme of the coupling */
     int max_iterations;        /* maximum number of iterations */
 } hf_coupling_settings;
 
-/* Settings of the form-finding (section form) and of its coupling. */
+/* Contains the settings of the form-finding (section `form`) and of its coupling. */
 typedef struct {
     hf_method method;          /* method of the form-finding */
     double pretension_N;       /* pretension Td of cables of law tension without a target value */
@@ -200,7 +206,7 @@ typedef struct {
     hf_factor factor;              /* code that factors the matrices */
 } hf_form_settings;
 
-/* Settings of the optimisation (section optimize). */
+/* Contains the settings of the optimisation (section `optimize`). */
 typedef struct {
     hf_optimize_method method;            /* algorithms of the optimisation */
     hf_rule rule;                         /* meaning of the pretension of a boundary cable */
@@ -237,16 +243,17 @@ bool hf_objective_takes_load_cases(const hf_objective_settings *settings);
 /* Returns true if an objective is measured on samples of as-built nets. */
 bool hf_optimize_takes_samples(const hf_optimize_settings *settings);
 
-/* One row of `cables`, the material of the cables of a set. NaN means that a value is not given. */
+/* Describes one row of the list `cables`. The row contains the material of the cables of a set. NaN means that a value
+ * is not given. */
 typedef struct {
     char set[HF_SET_NAME_SIZE];            /* cables: name of a set, or inner, boundary, all */
     double expansion_per_K, mass_kg_per_m; /* thermal expansion, and mass per unstressed length */
 } hf_cable_settings;
 
-/* Nodes to which a row applies: all nodes, or the nodes of one role. */
+/* Selects the nodes to which a row applies: all nodes, or the nodes of one role. */
 typedef enum { HF_NODES_ALL, HF_NODES_SUPPORT, HF_NODES_INNER, HF_NODES_EDGE } hf_nodes;
 
-/* One row of `nodes`, a mass at nodes. */
+/* Describes one row of the list `nodes`. The row adds a mass to nodes. */
 typedef struct {
     hf_nodes role;  /* nodes that have the mass */
     double mass_kg; /* mass of each node */
@@ -254,8 +261,8 @@ typedef struct {
 
 #define HF_MATERIAL_ROWS_MAX 16 /* maximum number of rows of `cables` and of `nodes` */
 
-/* Part that has the temperature of a row of `load_cases`: everything, all cables, or the truss. From HF_PART_UNIT on,
- * the part consists of the truss members of one unit, in the order of hf_unit. */
+/* A row of `load_cases` gives a temperature to the whole structure, to all cables, or to the truss. Values from
+ * HF_PART_UNIT on select the truss members of one unit, in the order of hf_unit. */
 typedef enum { HF_PART_ALL, HF_PART_NET, HF_PART_TRUSS, HF_PART_UNIT } hf_part;
 
 /* One row of `load_cases`. Rows with the same name form one load case. NaN means that a number is not given. */
@@ -276,7 +283,7 @@ typedef struct {
 #define HF_LOAD_CASE_ROWS_MAX 32 /* maximum number of rows of `load_cases` */
 #define HF_LOAD_CASES_MAX 16     /* maximum number of load cases */
 
-/* Material and load cases of the as-built net. */
+/* Contains the material and the load cases of the as-built net. */
 typedef struct {
     int n_cable, n_node, n_load_case;                       /* numbers of rows */
     hf_cable_settings cable[HF_MATERIAL_ROWS_MAX];          /* [n_cable] rows of `cables` */
@@ -284,12 +291,12 @@ typedef struct {
     hf_load_case_settings load_case[HF_LOAD_CASE_ROWS_MAX]; /* [n_load_case] rows of `load_cases` */
 } hf_built_settings;
 
-/* Positions from which psi is measured when an as-built net is adjusted: the target positions, or the positions of the
- * design. */
+/* When an as-built net is adjusted, psi is measured from the target positions or from the positions of the design. */
 typedef enum { HF_AIM_TARGET, HF_AIM_DESIGN } hf_aim;
 
-/* Settings of the turnbuckles of an as-built net (section adjust). Some cables of the set are lengthened or shortened
- * by whole steps within a range to reduce the figure of the net. */
+/* Contains the settings of the turnbuckles of an as-built net (section `adjust`). The adjustment lengthens or shortens
+ * some cables of the set by whole steps within a range. The purpose of the adjustment is a smaller value of
+ * `figure`. */
 typedef struct {
     char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: name of a set, or inner, boundary, all */
     double range_m, step_m;     /* maximum change of the cut length in either direction, and step */
@@ -300,12 +307,13 @@ typedef struct {
     double sigma_m; /* standard deviation of measured coordinates that have none of their own; 0: not given */
 } hf_adjust_settings;
 
-/* Distribution of errors, and method by which samples of the errors are chosen. */
+/* The first enumeration is the distribution of errors. The second enumeration is the method that chooses samples of the
+ * errors. */
 typedef enum { HF_DISTRIBUTION_NORMAL, HF_DISTRIBUTION_UNIFORM } hf_distribution;
 typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 
-/* X(name, word, unit, condition, description): the measures of each sample of the as-built net. Case files and result
- * files contain the words. A measure exists if its condition is met:
+/* Each row X(name, word, unit, condition, description) defines a measure of a sample of the as-built net. Case files
+ * and result files contain the words. A measure exists if its condition is met:
  *
  *   ALWAYS       always
  *   SURFACE      with a section surface
@@ -337,7 +345,7 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 typedef enum { HF_TOLERANCE_MEASURES(HF_TOLERANCE_ENUMERATOR) HF_TOLERANCE_N_MEASURE } hf_tolerance_measure;
 #undef HF_TOLERANCE_ENUMERATOR
 
-/* One row of tolerance.require, which bounds a measure. */
+/* Describes one row of tolerance.require. The row bounds a measure. */
 typedef struct {
     hf_tolerance_measure measure; /* bounded measure */
     double at_most, at_least;     /* bounds in the unit of the measure; NaN: not given */
@@ -345,7 +353,8 @@ typedef struct {
 
 #define HF_REQUIRE_ROWS_MAX 8 /* maximum number of rows of tolerance.require */
 
-/* One row of tolerance.truss, an error of the temperature that all members of a part have in common. */
+/* Describes one row of tolerance.truss. The row contains the temperature error that all members of a part have in
+ * common. */
 typedef struct {
     int part;                   /* 0: the whole truss; 1 + k: the members of hf_unit k */
     double sigma_temperature_K; /* standard deviation of the temperature */
@@ -353,7 +362,8 @@ typedef struct {
 
 #define HF_TRUSS_HEAT_ROWS_MAX 8 /* maximum number of rows of tolerance.truss, one for each part */
 
-/* Errors of the as-built net (section tolerance). The errors are standard deviations for every distribution. */
+/* Contains the errors of the as-built net (section `tolerance`). The errors are standard deviations for every
+ * distribution. */
 typedef struct {
     double sigma_cut_m, sigma_cut_ratio; /* errors of cut lengths: absolute value, and value relative to the length */
     double sigma_support_m;              /* error of each coordinate of a support */
@@ -372,7 +382,7 @@ typedef struct {
 
 #define HF_LIST_MAX 32 /* maximum number of values in a list */
 
-/* A list of numbers in a case file. */
+/* Contains a list of numbers from a case file. */
 typedef struct {
     int n;                     /* number of values */
     double value[HF_LIST_MAX]; /* [n] the values */
@@ -381,13 +391,13 @@ typedef struct {
 /* Feed that illuminates the reflector. HF_FEED_AUTO selects a line feed for a cylinder and a point feed for other
  * surfaces. */
 typedef enum { HF_FEED_AUTO, HF_FEED_POINT, HF_FEED_LINE, HF_FEED_PLANE_WAVE } hf_feed_kind;
-/* Polarisation of the field of the feed on its axis. */
+/* Selects the polarisation of the field of the feed on its axis. */
 typedef enum { HF_POLARISATION_X, HF_POLARISATION_Y } hf_polarisation;
 
 #define HF_PATTERN_CUTS 8 /* maximum number of cuts */
 
-/* Far field of the reflector (section surface.pattern, see pattern.h). If a value of the feed is NaN, its default
- * follows from the target surface. */
+/* Contains the settings of the far field of the reflector (section surface.pattern, see pattern.h). If a value of the
+ * feed is NaN, its default follows from the target surface. */
 typedef struct {
     double theta_deg[2];    /* first and last angle of each cut, measured from +z */
     int n_theta;            /* number of angles, at equal steps */

@@ -1,9 +1,9 @@
 /* status - a list of result codes with their texts and exit statuses, and messages for the user.
  * Stability: stable.
  *
- * The library distinguishes three classes of errors. A programming error fails an assert. A design without a shape gets
- * a status and its numbers are NaN. The batch continues with the other designs. A run that fails returns a status and
- * messages to its caller. The library never prints and never exits. */
+ * The library distinguishes three classes of errors. A programming error causes an assertion to fail. For a design
+ * without a shape, the library returns a status and sets the numbers to NaN. The batch continues with the other
+ * designs. A run that fails returns a status and messages to its caller. The library never prints and never exits. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -12,12 +12,9 @@
 
 HF_API_BEGIN
 
-/* X(name, value, word stored in files, ...), where ... are the following designated members:
- *
- *   .exit_code   exit status of the program
- *   .text        text for the user
- *
- * HDF5 files contain the values, so never renumber them. The glossary explains each word. */
+/* Each row X(name, value, word stored in files, ...) defines a status. The designated member .exit_code is the exit
+ * status of the program. The designated member .text is a text for the user. HDF5 files contain the values. Therefore,
+ * never renumber the values. The glossary explains each word. */
 #define HF_STATUS_LIST(X)                                                                                              \
     X(OK, 0, "ok", .exit_code = 0, .text = "done")                                                                     \
     X(NOT_CONVERGED, 1, "not_converged", .exit_code = 3,                                                               \
@@ -54,14 +51,14 @@ typedef enum {
 #undef HF_STATUS_ENUM
 } hf_status;
 
-/* Returns the word of a status, as used in files, as a constant string. Returns "unknown" for a value that is not in
- * the list. */
-const char *hf_status_word(hf_status status);
-/* Returns the status of a word. Returns HF_IO for a word that is not in the list, because another version may store
- * such a word. */
-hf_status hf_status_of_word(const char *word);
-/* Returns the status as a text for the user, a constant string. Returns "unknown status" for a value that is not in the
+/* Returns a constant string with the word that files use for a status. Returns "unknown" for a value that is not in the
  * list. */
+const char *hf_status_word(hf_status status);
+/* Returns the status that belongs to a word. Returns HF_IO for a word that is not in the list because another version
+ * may have stored the word. */
+hf_status hf_status_of_word(const char *word);
+/* Returns a constant string that describes the status to the user. Returns "unknown status" for a value that is not in
+ * the list. */
 const char *hf_status_text(hf_status status);
 /* Returns the exit status of the program for a status:
  *
@@ -74,14 +71,15 @@ const char *hf_status_text(hf_status status);
  *   75   interrupted before the end */
 int hf_status_exit_code(hf_status status);
 
-/* Returns true if a design with this status has a shape. A design with a shape is feasible, or it is infeasible only
- * because it violates a constraint. */
+/* Returns true if a design with this status has a shape. A design with a shape is feasible or violates only a
+ * constraint. */
 static inline bool hf_status_has_shape(hf_status status)
 {
     return status == HF_OK || status == HF_RATIO_CAP || status == HF_OUT_OF_LIMITS;
 }
 
-/* Evaluates `expression` once. If its status is not HF_OK, the calling function returns this status. */
+/* Evaluates `expression` once. If the status of the expression is not HF_OK, the calling function returns this
+ * status. */
 #define HF_TRY(expression)                                                                                             \
     do {                                                                                                               \
         hf_status hf_try_status_ = (expression);                                                                       \
@@ -92,8 +90,8 @@ static inline bool hf_status_has_shape(hf_status status)
  * optimize.objective.0.set". */
 typedef void hf_location_find(const void *context, const char *key, char *text, size_t size);
 
-/* A list of messages for the user, which grows as needed. Initialise the list to zero and call hf_messages_free at the
- * end. If memory runs out, lines are lost, but the counts remain correct. */
+/* Contains a list of messages for the user. The list grows as needed. Initialise the list to zero and call
+ * hf_messages_free at the end. If memory runs out, some lines are lost but the counts remain correct. */
 typedef struct {
     char *text;              /* lines, each ending with '\n'; NULL: there are none */
     size_t length, capacity; /* numbers of bytes used and allocated */
@@ -112,16 +110,16 @@ typedef struct {
 #endif
 
 /* Appends the line "error: ..." and returns `code`. A caller can therefore write `return hf_error(...)`. If `messages`
- * is NULL, no line is kept. The argument `format` is a printf format. */
+ * is NULL, the function appends no line. The argument `format` is a printf format. */
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...) HF_PRINTF(3, 4);
 /* Appends the line "warning: ...", unless `messages` is NULL. The argument `format` is a printf format. */
 void hf_warning(hf_messages *messages, const char *format, ...) HF_PRINTF(2, 3);
 /* Writes the location of a key to `text`, for the beginning of a message. An example of a location is "case.yaml:7:3:
- * optimize.objective.0.set". If the location is unknown, the text is the key alone. The argument `key_format` is a
- * printf format. Returns the argument `text`. */
+ * optimize.objective.0.set". If the location is unknown, the function writes only the key. The argument `key_format` is
+ * a printf format. Returns the argument `text`. */
 const char *hf_messages_location(const hf_messages *messages, char text[HF_LOCATION_SIZE], const char *key_format, ...)
     HF_PRINTF(3, 4);
-/* Frees all lines. The list can then be used again. */
+/* Frees all lines. After this call, the list can be used again. */
 void hf_messages_free(hf_messages *messages);
 
 HF_API_END

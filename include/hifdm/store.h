@@ -1,9 +1,9 @@
 /* store - one HDF5 file per run, and a journal beside it while the run is unfinished.
  * Stability: stable.
  *
- * hifdm writes the file under a temporary name and renames it when it is complete. The visible file is therefore always
- * complete. The journal holds the results that are not yet in the file. The commands `show`, `report` and `export` read
- * the file. Pipeline of a run:
+ * hifdm writes the file under a temporary name and renames the file after completion. The visible file is always
+ * complete. The journal contains the results that are not yet in the file. The commands `show`, `report` and `export`
+ * read the file. Pipeline of a run:
  *
  *   hf_store_create or hf_store_resume       provenance, case, scene
  *   hf_store_form                            shape of the form-finding
@@ -12,11 +12,11 @@
  *   hf_store_finish                          summary; the file gets its final name
  *
  * The following list shows the layout of a file for n nodes, m cables and k design variables. Every data set has the
- * attributes `units` ("": dimensionless) and `description`. Roles, groups, laws, statuses and similar values are HDF5
- * enumerations. All texts are encoded in UTF-8. Texts that hifdm reads back have a fixed length, because HDF5 1.10
- * crashes on damaged texts of variable length. The texts of fixed length are provenance, title, warnings, case_path,
- * ids and names. All other texts have a variable length. Times, threads and host are stored only as attributes, so the
- * data sets of two runs of the same case are equal.
+ * attributes `units` and `description`. The unit "" means that the data set is dimensionless. Roles, groups, laws,
+ * statuses and similar values are HDF5 enumerations. All strings are encoded in UTF-8. HDF5 1.10 crashes on damaged
+ * strings of variable length. Therefore, strings that hifdm reads back have a fixed length. The strings of fixed length
+ * are provenance, title, warnings, case_path, ids and names. All other strings have a variable length. Times, threads
+ * and host are stored only as attributes, so the data sets of two runs of the same case are equal.
  *
  *   /            attributes: program ("hifdm"), format_version (3), version, git_describe, compiler, build_flags,
  *                hdf5_version, gsl_version, lapack, rng, host, argv[], started_utc, published_utc, finished_utc, title,
@@ -86,7 +86,7 @@
  *   /VTKHDF      of a finished run: its shapes as a grid that ParaView opens, linked to the data sets above; the list
  *                of its arrays is at the top of src/store/vtkhdf.h
  *
- * hifdm also reads files of version 0.2. A finished file also contains the names of version 0.2, as soft links and as
+ * hifdm also reads files of version 0.2. A finished file also contains the names of version 0.2 as soft links and as
  * copies of attributes (src/manual/renames.md). Version 0.4 will no longer write the names of version 0.2. */
 #pragma once
 
@@ -99,40 +99,40 @@
 
 HF_API_BEGIN
 
-/* The file of a run that is being written. Only one thread at a time may use a store. */
+/* Represents the file of a run that is being written. Only one thread at a time may use a store. */
 typedef struct hf_store hf_store;
 
-/* Several threads may call the functions of this header at the same time. If several threads call these functions, no
- * two of them may use the same store at the same time. The functions that read have no such restriction. Calls from
- * several threads wait for each other because HDF5 works for one thread at a time. */
+/* Several threads may call the functions of this header at the same time if each thread uses a different store. The
+ * functions that read a file need no store and have no such restriction. Calls from several threads wait for each other
+ * because HDF5 works for one thread at a time. */
 
-/* HDF5 groups of the shapes in a file: "/form", "/search", "/refine", "/". */
+/* Contains the names of the HDF5 groups with shapes: "/form", "/search", "/refine" and "/". */
 extern const char *const hf_stage_group[HF_N_STAGE + 1];
 
 /* Returns the stage whose shape is the result of a finished run. */
 hf_stage hf_store_result_stage(const hf_summary *summary);
 
-/* Computes the identity of a run as 64 hexadecimal digits and a NUL. The identity is a digest of the text and overrides
- * of the case, the seed, the tables of load cases, and the selected point of a front. The digest also includes the
- * scene and the truss with their ids. The argument `truss` is NULL if there is no truss. Returns HF_OK or
+/* Computes the identity of a run as 64 hexadecimal digits and a NUL. The identity is a digest of the case text, the
+ * overrides, the seed, the tables of load cases and the selected point of a Pareto front. The digest also includes the
+ * scene and the truss with their ids. If the case has no truss, the argument `truss` is NULL. Returns HF_OK or
  * HF_NO_MEMORY. */
 hf_status hf_store_identify(const hf_case *settings, const hf_scene *scene, const hf_truss *truss, char identity[65]);
 
-/* Kind of object that exists at a path. */
+/* Describes the kind of object that exists at a path. */
 typedef enum { HF_STORE_NOTHING, HF_STORE_UNFINISHED, HF_STORE_FINISHED } hf_store_state;
 
-/* Determines whether `path` holds nothing, an unfinished result, or a finished result. A result counts only if it
- * belongs to this case, scene and truss. Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if the path holds
- * anything else. The message lists the keys in which the cases differ. */
+/* Determines whether `path` contains nothing, an unfinished result or a finished result. The function accepts a result
+ * only if the result belongs to this case, scene and truss. Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if
+ * `path` is the name of any other result or file. The message lists the keys in which the cases differ. */
 hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scene *scene, const hf_truss *truss,
                         hf_store_state *state, hf_messages *messages);
 
-/* Creates the file of a new run and writes case, scene and provenance. The arguments argv [argc] are part of the
- * provenance, and argc may be 0. The store borrows none of the arguments. The function checks the name `path` at the
- * beginning of the run, before results are computed. Returns HF_OK or HF_NO_MEMORY. Returns HF_EXISTS if the name is in
- * use and `restart` is false. Returns HF_IO if the name is a folder, if another process writes the file, or if the file
- * cannot be created. Also returns HF_IO if the folder of the file does not exist or is not writable. After a failure of
- * this function, *store is NULL. */
+/* Creates the file of a new run and writes the case, the scene and the provenance. The array argv [argc] is part of the
+ * provenance. The number argc may be 0. The store borrows none of the arguments. The function checks the name `path`
+ * before the run computes results. Returns HF_OK or HF_NO_MEMORY. Returns HF_EXISTS if the name is in use and `restart`
+ * is false. Returns HF_IO if the name is a folder, if another process writes the file, or if the file cannot be
+ * created. If the folder of the file does not exist or is not writable, the function also returns HF_IO. If
+ * hf_store_create fails, *store is NULL. */
 hf_status hf_store_create(const char *path, bool restart, const hf_case *settings, const hf_scene *scene,
                           const hf_truss *truss, int argc, char *const *argv, hf_store **store, hf_messages *messages);
 
@@ -141,105 +141,108 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
 /* Adds the generations of the journal to the unfinished file at `path` and reads the summary of the file. The function
- * computes no further results. If the file is finished, it remains unchanged, and the function adds a warning. Returns
- * the same status codes as hf_store_resume. The function also returns HF_EXISTS if this build proposes other designs
- * than the build that wrote the journal. */
+ * computes no new results. If the file is finished, the function leaves the file unchanged and adds a warning. Returns
+ * the same status codes as hf_store_resume. If this build proposes other designs than the build that wrote the journal,
+ * the function also returns HF_EXISTS. */
 hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *messages);
 
 /* Returns the number of generations in the store, including those in the journal. */
 int hf_store_generations(const hf_store *store);
 
-/* All functions that write return HF_OK, HF_IO or HF_NO_MEMORY, and add a message after a failure. After a failed
- * write, the store is unusable. Calls after a failed write do not write anything and return the same status. Calls
- * after a failed write add no message. The only exception is hf_store_complete. If store is NULL, these functions write
- * nothing and return HF_OK. */
+/* All functions that write return HF_OK, HF_IO or HF_NO_MEMORY. If they fail, they add a message. After a failed write,
+ * the store is unusable. Later calls with this store write nothing, add no message and return the same status. The only
+ * exception is hf_store_complete. If `store` is NULL, the functions that write have no effect and return HF_OK. */
 
-/* Writes the shape in the workspace in the order of the scene. The function also writes the history unless it is NULL.
- * Call this function once per store. If the store is resumed, the function compares the shape with the stored shape
- * instead of writing it. If the tensions of the two shapes differ in the last bits, the function adds a warning. If the
- * tensions of the two shapes differ by more than 1e-5 of the maximum, the function returns HF_EXISTS. */
+/* Writes the shape in the workspace in the order of the scene. Unless `history` is NULL, the function also writes the
+ * history of the iterations. Call hf_store_form once per store. If the store is resumed, the function does not write
+ * the shape but compares the shape with the stored shape. If the tensions of the two shapes differ in the last bits,
+ * the function adds a warning. If the tensions of the two shapes differ by more than 1e-5 of the maximum tension, the
+ * function returns HF_EXISTS. */
 hf_status hf_store_form(hf_store *store, const hf_model *model, const hf_workspace *workspace,
                         const hf_history *history, hf_messages *messages);
 
-/* Writes the initial design, the bounds and the cables of the design variables. Call this function once, after the
- * population is created. A resumed store already contains these data, and the function then writes nothing. */
+/* Writes the initial design, the bounds and the cables of the design variables. Call hf_store_variables once, after the
+ * population is created. If the store is resumed, it already contains these data and the function writes nothing. */
 hf_status hf_store_variables(hf_store *store, const hf_model *model, const hf_population *population,
                              hf_messages *messages);
 
 /* Appends the generation that hf_optimiser_tell has just ranked. If the status is HF_OK, the generation is preserved
- * even if this process ends. The same build can restore the generation (hf_store_restore). If the status is HF_IO, all
- * earlier generations are preserved, provided that hf_store_publish was called after hf_store_variables. */
+ * even if this process ends. The same build of hifdm can restore the generation (hf_store_restore). If the status is
+ * HF_IO and hf_store_publish was called after hf_store_variables, all earlier generations are preserved. */
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
-/* Reads the initial design [n_variable] with which the genetic algorithm of a resumed store started. The stored values
- * are needed because this machine may compute values that differ in the last bits. If the store has no initial design,
+/* Reads the initial design initial [n_variable] of the genetic algorithm from a resumed store. The stored values are
+ * necessary because this machine may compute values that differ in the last bits. If the store has no initial design,
  * `initial` is unchanged. */
 hf_status hf_store_restore_initial(hf_store *store, int n_variable, double *initial, hf_messages *messages);
 
-/* Restores the state of an optimiser before hf_optimiser_tell of the last generation in the store. The optimiser must
- * have just been created from the design of hf_store_restore_initial. The summary receives the figures of the best
- * individual so far. The optimiser proposes the designs of the generations in the journal again. If this build proposes
- * other designs, the function omits these generations and adds a warning. If the store has no generation, the function
- * does nothing. */
+/* Restores the state that the optimiser had before hf_optimiser_tell for the last generation in the store. The caller
+ * must have just created the optimiser from the design of hf_store_restore_initial. The summary receives the values of
+ * the best individual so far. The optimiser again proposes the designs of the generations in the journal. If this build
+ * does not propose the designs in the journal, the function omits these generations and adds a warning. If the store
+ * has no generation, the function does nothing. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
-/* Copies the state of Levenberg-Marquardt, state [n], and its elapsed time wall_s in s for later publications. A
- * finished file does not contain this state. */
+/* Copies the state state [n] of Levenberg-Marquardt and its elapsed time wall_s in s. Later publications include this
+ * state. A finished file does not contain the state of Levenberg-Marquardt. */
 hf_status hf_store_refine(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
-/* Reads the state of Levenberg-Marquardt in a resumed store. The function sets *wall_s in s, *state and the size *n of
- * the state. If there is no state, *n is 0. The array *state is borrowed until the next hf_store_refine. */
+/* Reads the state of Levenberg-Marquardt in a resumed store. The function sets *wall_s to the elapsed time in s, *state
+ * to the state, and *n to the size of the state. If the store contains no state of Levenberg-Marquardt, *n is 0. The
+ * array *state is borrowed until the next call of hf_store_refine. */
 hf_status hf_store_restore_refine(hf_store *store, double *wall_s, size_t *n, const double **state,
                                   hf_messages *messages);
 
-/* Publishes all results so far. A file that is marked as unfinished then gets the visible name. If at_once is true, the
- * function publishes immediately. If at_once is false, the function publishes only after a certain time since the last
- * publication. This time is at least 0.5 s and at least 50 times the duration of that publication. Publishing therefore
- * takes less than 2 % of the time. Call this function after every generation. */
+/* Publishes all results so far. The published file has the visible name and is marked as unfinished. If at_once is
+ * true, the function publishes immediately. If at_once is false, the function publishes only if enough time has passed
+ * since the last publication. The time between two publications is at least 0.5 s and at least 50 times the duration of
+ * the first publication. Publishing therefore takes less than 2 % of the run time. Call hf_store_publish after every
+ * generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
-/* Writes the shape in the workspace and its design [model->n_variable] as those of the stage HF_STAGE_SEARCH or
- * HF_STAGE_REFINE. Call this function once per stage. */
+/* Writes the shape in the workspace and the design design [model->n_variable] for the stage HF_STAGE_SEARCH or
+ * HF_STAGE_REFINE. Call hf_store_shape once per stage. */
 hf_status hf_store_shape(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                          const double *design, hf_messages *messages);
 
-/* Writes the Pareto front and replaces an earlier one. The names of the objectives are taken from the summary. */
+/* Writes the Pareto front and replaces an earlier Pareto front. The summary contains the names of the objectives. */
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages);
 
-/* Writes the far field of the shape of a stage and replaces an earlier one. */
+/* Writes the far field of the shape of a stage and replaces an earlier far field. */
 hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *table,
                            const hf_pattern_summary *figures, hf_messages *messages);
-/* Reads the far field of the shape of a stage. Returns HF_OK or HF_NO_MEMORY. Returns HF_IO after a read error or if
- * there is no far field. Call hf_pattern_table_free even if hf_store_read_pattern fails. */
+/* Reads the far field of the shape of a stage. Returns HF_OK or HF_NO_MEMORY. Returns HF_IO if the file cannot be read
+ * or contains no far field. Call hf_pattern_table_free even if hf_store_read_pattern fails. */
 hf_status hf_store_read_pattern(const char *path, hf_stage stage, hf_pattern_table *table, hf_messages *messages);
 
 /* Writes the shape in the workspace as the shape of load case `name` of the as-built net. The function replaces an
- * earlier shape of this load case. The argument `truss` has the displacements and forces of the truss in this load
- * case. The argument `truss` is NULL if there is no truss. */
+ * earlier shape of this load case. The argument `truss` contains the displacements and forces of the truss in this load
+ * case. If the case has no truss, the argument `truss` is NULL. */
 hf_status hf_store_built(hf_store *store, const char *name, const hf_model *model, const hf_workspace *workspace,
                          const hf_carrier *carrier, const hf_carrier_state *truss, hf_messages *messages);
 
-/* Writes the summary, closes the file and gives it its final name. Calls hf_store_complete and hf_store_settle. The
- * function frees the store even after a failure. If the function fails, the published file and the journal remain
- * unchanged. If the file is complete but cannot get its final name (HF_EXISTS, HF_IO), it keeps another name. The
- * message contains the name of this file. */
+/* Writes the summary, closes the file and renames the file to its final name. Calls hf_store_complete and
+ * hf_store_settle. The function frees the store even if the function fails. If the function fails, the published file
+ * and the journal remain unchanged. If the file is complete but cannot have its final name (HF_EXISTS, HF_IO), the file
+ * keeps another name. The error message contains this other name. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
-/* Writes the summary and closes the file, which takes processor time. The caller must then call hf_store_settle, even
- * after a failure. */
+/* Writes the summary and closes the file. The function requires processor time. Even if hf_store_complete fails, the
+ * caller must call hf_store_settle afterwards. */
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
-/* Writes the file from the cache to the disk and renames it. Most of the time the function only waits, so another
- * thread may call it. The function frees the store even after a failure. */
+/* Writes the file from the cache to the disk and renames the file. The function mostly waits for the disk. Another
+ * thread may therefore call the function. The function frees the store even if the function fails. */
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 
 /* Frees the store, which may be NULL. The published file remains on the disk. The journal also remains, with the
  * generations that the file does not contain. */
 void hf_store_end(hf_store *store);
-/* Frees the store in the same way as hf_store_end. The function adds a warning if it cannot remove a temporary file. */
+/* Frees the store in the same way as hf_store_end. If the function cannot remove a temporary file, it adds a
+ * warning. */
 void hf_store_abandon(hf_store *store, hf_messages *messages);
 
-/* A stored shape in the order of the scene. */
+/* Contains a stored shape in the order of the scene. */
 typedef struct {
     double *position_m;                       /* [n_node][3] positions of the nodes */
     double *length_m, *tension_N, *q_N_per_m; /* [n_cable] lengths, tensions and force densities */
@@ -247,49 +250,50 @@ typedef struct {
     void *block;                              /* owned memory behind the arrays */
 } hf_shape;
 
-/* The functions that read return HF_OK or HF_NO_MEMORY. The functions that read return HF_IO with one message if the
- * file does not exist, is not a file of hifdm, or is damaged. If a function that reads fails, its output is all
- * zero. */
+/* The functions that read return HF_OK or HF_NO_MEMORY. If the file does not exist, is not a file of hifdm, or is
+ * damaged, the functions that read return HF_IO and add one message. If a function that reads fails, all members of its
+ * output are zero. */
 
-/* Reads every member of the summary. The values are bit-for-bit identical to those that were passed to hf_store_finish.
- * If a stage does not exist, its figures are 0. Call hf_summary_free even if hf_store_read_summary fails. */
+/* Reads all members of the summary. The values are bit-for-bit identical to the values that hf_store_finish received.
+ * If a stage does not exist, all its values are 0. Call hf_summary_free even if hf_store_read_summary fails. */
 hf_status hf_store_read_summary(const char *path, hf_summary *summary, hf_messages *messages);
 
 /* Reads the scene without its line numbers. Call hf_scene_free even if hf_store_read_scene fails. */
 hf_status hf_store_read_scene(const char *path, hf_scene *scene, hf_messages *messages);
 
-/* Reads the shape of a stage. The function also returns HF_IO if there is no such shape. The numbers of nodes and
- * cables of the shape are those of hf_store_read_scene. Call hf_shape_free even if hf_store_read_shape fails. */
+/* Reads the shape of a stage. If the file does not contain this shape, the function also returns HF_IO. The shape has
+ * the same numbers of nodes and cables as the scene of hf_store_read_scene. Call hf_shape_free even if
+ * hf_store_read_shape fails. */
 hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape, hf_messages *messages);
 /* Reads the shape of load case `name`, in the same way as hf_store_read_shape. */
 hf_status hf_store_read_load_case(const char *path, const char *name, hf_shape *shape, hf_messages *messages);
 /* Frees the arrays of a shape. */
 void hf_shape_free(hf_shape *shape);
 
-/* Reads the Pareto front and the names of its design variables. The array *variable has n_variable names of
- * *variable_size bytes each. The function also returns HF_IO if there is no front. Free the front with hf_front_free
- * and *variable with free, even after a failure. */
+/* Reads the Pareto front and the names of its design variables. The array *variable contains n_variable names of
+ * *variable_size bytes each. If the file contains no Pareto front, the function also returns HF_IO. Free the front with
+ * hf_front_free and *variable with free, even if hf_store_read_front fails. */
 hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
                               hf_messages *messages);
 
-/* Writes the keys in which the case of a result differs from this case to text[size], as a list in the format of
- * hf_config_differences. Returns the number of keys that differ. The function also returns 0 if the result cannot be
- * read. */
+/* Writes the keys in which the case of a result differs from this case to text[size]. The list of keys has the format
+ * of hf_config_differences. Returns the number of keys that differ. If the result cannot be read, the function returns
+ * 0. */
 int hf_store_case_differences(const char *path, const hf_case *settings, char *text, size_t size);
 
-/* Writes the truss as described and its attachments to the net to the group /truss. If `state` is not NULL, the
- * function also writes the displacements and forces of the truss under the forces of the net. Call this function once,
- * before hf_store_finish with a summary in which has_truss is set. */
+/* Writes the description of the truss and its attachments to the group /truss. If `state` is not NULL, the function
+ * also writes the displacements and forces of the truss under the forces of the net. If has_truss is set in the
+ * summary, call hf_store_truss once before hf_store_finish. */
 hf_status hf_store_truss(hf_store *store, const hf_carrier *carrier, const hf_carrier_state *state,
                          hf_messages *messages);
 
-/* Reads the truss without its line numbers. The function also reads the displacements and forces of the truss. They are
- * all NULL if none were stored. The function also returns HF_IO if there is no truss. Call hf_truss_free and
- * hf_carrier_state_free even after a failure. */
+/* Reads the truss without its line numbers. The function also reads the displacements and forces of the truss. If the
+ * file contains no displacements and forces, the pointers to them are NULL. If the file contains no truss, the function
+ * also returns HF_IO. Call hf_truss_free and hf_carrier_state_free even if hf_store_read_truss fails. */
 hf_status hf_store_read_truss(const char *path, hf_truss *truss, hf_carrier_state *state, hf_messages *messages);
 
 /* Reads the displacements and forces of the truss in load case `name`. The argument `truss` is the truss that
- * hf_store_read_truss returned. The function also returns HF_IO if the load case has no shape. Call
+ * hf_store_read_truss returned. If the load case has no shape, the function also returns HF_IO. Call
  * hf_carrier_state_free even if hf_store_read_load_case_truss fails. */
 hf_status hf_store_read_load_case_truss(const char *path, const char *name, const hf_truss *truss,
                                         hf_carrier_state *state, hf_messages *messages);
@@ -297,9 +301,9 @@ hf_status hf_store_read_load_case_truss(const char *path, const char *name, cons
 /* Returns "VERSION (git describe)" of this library as a constant string. */
 const char *hf_store_version(void);
 
-/* Disables the error output of HDF5 and its exit handler, which crashes if the disk was full. Call this function once,
- * before the first call of HDF5. Returns false if there is not enough memory for HDF5. With too little memory, HDF5
- * would crash. */
+/* Disables the error output of HDF5 and its exit handler. The exit handler crashes if the disk was full. Call
+ * hf_store_quiet once before the first call of HDF5. Returns false if there is not enough memory for HDF5. HDF5 would
+ * crash if there were too little memory. */
 bool hf_store_quiet(void);
 
 HF_API_END

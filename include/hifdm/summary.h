@@ -1,8 +1,8 @@
 /* summary - the figures of a complete run.
  * Stability: stable.
  *
- * The command `run` prints the summary and stores it with the results. The command `show` prints the summary again. The
- * figures of the shape of a stage are those of HF_RESULT_LIST in <hifdm/result.h>. */
+ * The command `run` prints the summary and stores it with the results. The command `show` prints the stored summary.
+ * The list HF_RESULT_LIST in <hifdm/result.h> describes the quantities of the shape of a stage. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -24,9 +24,9 @@ HF_API_BEGIN
  *
  *   .json   place in the JSON object of the stage, after the figures of its result
  *
- * The lists define the members of hf_summary and the JSON objects. In the order of their rows, the lists also define
- * the HDF5 attributes and the columns of the ledger of a sweep. A new figure of a run needs a row in one of these lists
- * and the code that computes the figure. */
+ * The lists define the members of hf_summary and the JSON objects. The rows also define, in their order, the HDF5
+ * attributes and the columns of the ledger of a sweep. To add a quantity of a run, add a row to one of these lists and
+ * the code that computes the quantity. */
 
 /* Figures of the net. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \
@@ -38,7 +38,7 @@ HF_API_BEGIN
     X(double, pretension_N, REAL, .description = "of the case, N")                                                     \
     X(bool, has_own_tensions, TRUTH, .description = "1: no cable takes pretension_N, by the laws of all")
 
-/* Figures that only the search has. The search is the genetic algorithm. */
+/* This list describes the quantities that only the search has. The search is the genetic algorithm. */
 #define HF_SUMMARY_SEARCH_LIST(X)                                                                                      \
     X(hf_solver, solver, SOLVER, .json = 6, .description = "solver of the individuals")                                \
     X(double, initial_psi_m, REAL, .json = 2,                                                                          \
@@ -61,7 +61,7 @@ HF_API_BEGIN
       .description = "processor time of breeding, evaluating and storing, over all threads; without waiting")          \
     X(double, store_cpu_s, REAL, .json = 4, .description = "processor time of storing alone")
 
-/* Figures that only the refinement has. The refinement is Levenberg-Marquardt. */
+/* This list describes the quantities that only the refinement has. The refinement is Levenberg-Marquardt. */
 #define HF_SUMMARY_REFINE_LIST(X)                                                                                      \
     X(bool, is_result, FLAG, .json = 2, .description = "its design is the result, not only a comparison")              \
     X(int, steps, INT, .json = 1, .description = "steps of Levenberg-Marquardt")                                       \
@@ -77,7 +77,7 @@ HF_API_BEGIN
     X(int, n_at_limit, INT, .json = 5, .key = "at_limit",                                                              \
       .description = "limits of optimize.limits that the design is at, cable by cable")
 
-/* Figures of a load case of the as-built net (`load_cases`), in addition to those of its result. */
+/* This list describes the quantities of a load case of the as-built net (`load_cases`) in addition to its result. */
 #define HF_LOAD_CASE_LIST(X)                                                                                           \
     X(double, tension_min_N, REAL, .json = 1, .description = "minimum tension of all cables")                          \
     X(double, tension_max_N, REAL, .json = 1, .description = "maximum tension of all cables")                          \
@@ -92,11 +92,11 @@ HF_API_BEGIN
     X(int, n_node, INT, .json = 1, .key = "nodes", .description = "nodes of the truss")                                \
     X(int, n_member, INT, .json = 1, .key = "members", .description = "members of the truss")
 
-/* Maximum number of sets in hf_set_tensions. A page has space for this number of sets. */
+/* Defines the maximum number of sets in hf_set_tensions. A page has space for HF_SUMMARY_SETS sets. */
 #define HF_SUMMARY_SETS 16
 
-/* Tensions of the named sets of cables in one shape, for the first HF_SUMMARY_SETS sets of the net. The tension ratio
- * is computed as in hf_metrics_set_ratio. */
+/* Contains the tensions of the first HF_SUMMARY_SETS named sets of cables of the net in one shape. The tension ratio is
+ * computed as in hf_metrics_set_ratio. */
 typedef struct {
     int n;                                              /* number of sets */
     char name[HF_SUMMARY_SETS][HF_CABLE_SET_NAME_SIZE]; /* [n] names of the sets */
@@ -104,13 +104,14 @@ typedef struct {
     double min_N[HF_SUMMARY_SETS], max_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
 } hf_set_tensions;
 
-/* Maximum number of constraints in hf_held_limits, and size in bytes of the name of a constraint. */
+/* The following constants are the maximum number of constraints in hf_held_limits and the size in bytes of the name of
+ * a constraint. */
 #define HF_SUMMARY_HELD (2 * HF_DESIGN_ROWS_MAX + 1)
 #define HF_HELD_NAME_SIZE 160
 
-/* The active constraints of the shape of a stage, which are those whose bounds the shape reaches within 1e-8. The
- * constraints are boundary_ratio_cap and the rows of optimize.limits, with a separate entry for each side of a row. The
- * form-finding has no constraints. */
+/* Contains the active constraints of the shape of a stage. A constraint is active if the shape reaches its bound within
+ * 1e-8. The constraints are boundary_ratio_cap and the rows of optimize.limits. Each side of a row is a separate
+ * constraint. The form-finding has no constraints. */
 typedef struct {
     int n;                      /* number of constraints */
     int row[HF_SUMMARY_HELD];   /* [n] row of optimize.limits; -1: boundary_ratio_cap */
@@ -120,8 +121,8 @@ typedef struct {
     double value[HF_SUMMARY_HELD], bound[HF_SUMMARY_HELD]; /* [n] value and bound of this example, N, m or a ratio */
 } hf_held_limits;
 
-/* The rows of optimize.objective or optimize.front. The rows of optimize.front have neither weights nor a merit. The
- * values of the objectives and the merit are in the results of the stages. */
+/* Describes the rows of optimize.objective or optimize.front. The rows of optimize.front have neither weights nor a
+ * merit. The values of the objectives and the merit are in the results of the stages. */
 typedef struct {
     int n; /* number of objectives; 0: psi is minimised */
     /* [n] name such as objective_1_tension_edge: number, figure, set */
@@ -139,7 +140,7 @@ typedef struct {
     HF_SUMMARY_TRUSS_LIST(HF_SUMMARY_MEMBER)
 } hf_truss_summary;
 
-/* The figures of a load case. If the load case has no shape, all figures except the status are NaN. */
+/* Contains the quantities of a load case. If the load case has no shape, all values except the status are NaN. */
 typedef struct {
     char name[HF_SET_NAME_SIZE]; /* name of the load case */
     hf_form_result result;       /* result of the form-finding of the load case */
@@ -147,12 +148,12 @@ typedef struct {
     hf_surface_measures surface; /* surface figures of its shape */
 } hf_load_case_summary;
 
-/* The stages of a run that produce a shape. */
+/* These stages of a run produce a shape. */
 typedef enum { HF_STAGE_FORM, HF_STAGE_SEARCH, HF_STAGE_REFINE, HF_N_STAGE } hf_stage;
 extern const char *const hf_stage_word[HF_N_STAGE + 1]; /* "form", "search", "refine", "none" */
 
-/* Data that every stage has. The summary owns the memory behind the pointers, which comes from calloc. If a pointer is
- * NULL, there are no such data. */
+/* Data that every stage has. The summary owns the memory behind the pointers. The memory comes from calloc. If a
+ * pointer is NULL, the stage has no data of this kind. */
 typedef struct {
     bool exists; /* true: the stage ran, or HF_STAGE_REFINE holds the selected point of a front */
     /* result of its shape; for the search, that of the best individual (HF_NO_FEASIBLE: none is feasible) */
@@ -164,7 +165,8 @@ typedef struct {
     hf_held_limits *held;        /* active constraints of its shape */
 } hf_stage_summary;
 
-/* Data that only the search has, and data that only the refinement has. */
+/* The first struct contains the data that only the search has. The second struct contains the data that only the
+ * refinement has. */
 typedef struct {
     HF_SUMMARY_SEARCH_LIST(HF_SUMMARY_MEMBER)
 } hf_search_summary;
@@ -172,8 +174,8 @@ typedef struct {
     HF_SUMMARY_REFINE_LIST(HF_SUMMARY_MEMBER)
 } hf_refine_summary;
 
-/* The figures of a run. A summary is empty if it is all zero. A copy by assignment shares the memory that
- * hf_summary_free frees. */
+/* The figures of a run. If all members of a summary are zero, the summary is empty. A copy by assignment shares the
+ * memory that hf_summary_free frees. */
 typedef struct {
     /* version of the program; title of the case; path of the case file */
     char version[64], title[256], case_path[HF_PATH_SIZE];
@@ -206,18 +208,18 @@ typedef struct {
 void hf_summary_free(hf_summary *summary);
 
 /* Writes the summary to `file` as one JSON object, grouped by stage. The object omits stages that did not run and
- * contains null for NaN. The argument `messages` has lines as in hf_messages, or is NULL. The argument `path` is the
- * path of the result file, or NULL if no file was written. The caller can check the stream for write errors
- * (ferror). */
+ * contains null for NaN. The argument `messages` contains lines in the form of hf_messages and may be NULL. The
+ * argument `path` is the path of the result file. If no file was written, `path` is NULL. The caller can check the
+ * stream for write errors (ferror). */
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
-/* Returns the status that hf_summary_write_json writes for a file. The status is that of the whole run. Before the run
- * has ended, the status is that of the form-finding. */
+/* Returns the status that hf_summary_write_json writes for a file. If the run has ended, the status belongs to the
+ * whole run. If the run has not ended, the status belongs to the form-finding. */
 hf_status hf_summary_status(const hf_summary *summary);
 
-/* Returns the word for the algorithm of a stage. The word is "ga" or "nsga2" for the search, "lm" for the refinement,
- * and "" for other stages. */
+/* Returns the word for the algorithm of a stage. The word is "ga" or "nsga2" for the search and "lm" for the
+ * refinement. For other stages, the word is "". */
 const char *hf_summary_algorithm(const hf_summary *summary, hf_stage stage);
 
 /* Returns true if the result contains a shape of the stage. The search has a shape only if the run is finished and its

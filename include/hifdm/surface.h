@@ -1,16 +1,16 @@
 /* surface - the errors of a shape as a reflector surface (METHOD section 9).
  * Stability: stable.
  *
- * The figures are the RMS errors along the normal and of the half path length, before and after a best fit. The figures
- * also include the gain loss, faceting and percentiles. The best fit uses a surface of the target kind. If the case has
- * a section surface, the figures are computed once for each reported shape. Pipeline:
+ * The measures are the RMS errors along the normal and of the half path length, before and after a best fit. The
+ * measures also include the gain loss, the faceting error and percentiles. The fitted surface has the same kind as the
+ * target surface. If the case has a `surface` section, hifdm measures each reported shape once. Pipeline:
  *
  *   inner nodes of a shape -> errors (M16) -> RMS, percentiles -> best fit -> RMS -> gain loss (M17)
  *   facets of the shape    -> errors (M16) -> RMS              -> best fit -> RMS -> gain loss (M17)
  *
  * The target surface is the cylinder z = x^2/(4f), with its generatrix along y, or the paraboloid z = (x^2 + y^2)/(4f).
- * Let dz be the height of a point above the target surface, and t the slope at this point, x/(2f) or r/(2f). The error
- * along the normal is dz / sqrt(1 + t^2), and the error of the half path length is dz / (1 + t^2). */
+ * Let dz be the height of a point above the target surface. Let t be the slope x/(2f) or r/(2f) at this point. The
+ * error along the normal is dz / sqrt(1 + t^2). The error of the half path length is dz / (1 + t^2). */
 #pragma once
 
 #include <hifdm/api.h>
@@ -25,8 +25,8 @@ HF_API_BEGIN
  *   .json   place in the JSON object `surface` of a stage, where the figures of the fit have the prefix fit_; equal
  *           places keep the order of the list, with figures before the fit first; omitted: not in JSON
  *
- * The HDF5 attributes in /surface/STAGE have the order of the lists. The attributes of the fit have the prefix fit_. A
- * new figure needs a row in one of these lists and the code that computes the figure. */
+ * The HDF5 attributes in /surface/STAGE have the order of the lists. The attributes of the fit have the prefix fit_. To
+ * add a quantity, add a row to one of these lists and the code that computes the quantity. */
 #define HF_SURFACE_LIST(X)                                                                                             \
     X(double, z_rms_m, REAL, .json = 1, .description = "RMS height of the nodes above their target positions")         \
     X(double, normal_rms_m, REAL, .json = 1, .description = "RMS error along the normal at the inner nodes, raw")      \
@@ -80,8 +80,8 @@ HF_API_BEGIN
     X(int, iterations, INT, .description = "of the last fit")                                                          \
     X(bool, converged, TRUTH, .json = 5, .description = "false: all but the centre and iterations is NaN")
 
-/* X(member, description): gain losses in dB by frequency (M17). The gain losses are lists in JSON and data sets in
- * HDF5. */
+/* Each row X(member, description) defines a list of gain losses in dB by frequency (M17). The gain losses are lists in
+ * JSON and data sets in HDF5. */
 #define HF_SURFACE_LOSS_LIST(X)                                                                                        \
     X(gain_loss_dB, "loss of gain (Ruze) of the nodes by frequency; NaN beyond 3 dB, where the formula does not hold") \
     X(fit_gain_loss_dB, "the same after the best fit")                                                                 \
@@ -90,75 +90,76 @@ HF_API_BEGIN
 
 #define HF_SURFACE_MEMBER(type, member, ...) type member;
 
-/* The best fit of a surface to a set of points. The fitted surface is the surface of the target kind with the minimum
- * half-path RMS (METHOD section 9). The fit changes the focal length of the target surface. The fitted surface is also
- * rotated about the centre of the points by Rx(a) Ry(b) Rz(c) and then shifted. The fit omits motions that do not
- * change the surface. Such motions are the shift of a cylinder along y and the rotation Rz of a paraboloid. In a
- * shallow reflector, a lateral shift and a rotation are nearly the same motion. The values of this shift and this
- * rotation are therefore uncertain, but the fitted surface is not.
+/* Describes the best fit of a surface to a set of points. The fitted surface is the surface of the target kind with the
+ * minimum half-path RMS (METHOD section 9). The focal length of the fitted surface may differ from the focal length of
+ * the target surface. The fit also rotates the surface about the centre of the points by Rx(a) Ry(b) Rz(c) and then
+ * shifts the surface. The fit omits motions that do not change the surface. Therefore, the fit omits the shift of a
+ * cylinder along y and the rotation Rz of a paraboloid. In a shallow reflector, a lateral shift and a rotation are
+ * nearly the same motion. The lateral shift and the rotation are therefore uncertain, but the fitted surface is not.
  *
- * Parameters that the points do not determine keep the values of the target surface. The shift shift_x_m is 0 if the
- * minimum is not found. It is also 0 if the minimum needs a shift of more than a tenth of the half-width of the net.
- * The same rule holds for shift_y_m of a paraboloid. The focal length focal_length_m is that of the target surface if
- * the minimum is not found. The target focal length is also used if the focal length of the minimum is more than twice
- * or less than half of it. Points on two lines along y, for example, do not determine the focal length. */
+ * Parameters that the points do not determine keep the values of the target surface. If the minimum is not found, the
+ * shift shift_x_m is 0. The shift shift_x_m is also 0 if the minimum needs a shift of more than a tenth of the
+ * half-width of the net. For a paraboloid, the rules for shift_x_m also apply to shift_y_m. If the minimum is not
+ * found, the focal length focal_length_m is the focal length of the target surface. If the focal length of the minimum
+ * is more than twice or less than half of the target focal length, the fit also uses the target focal length. Points on
+ * two lines along y, for example, do not determine the focal length. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
 
-/* Fits a surface to the n points position_m [3][n], in m. The weight of a point is the square of root_weight [n]. If
- * root_weight is NULL, all weights are equal. The argument `kind` must not be HF_SURFACE_AUTO, and focal_length_m is
- * that of the target surface. With fewer than six points, the fit is not unique. Call gsl_set_error_handler_off()
- * before this function (see hifdm.h). Returns HF_OK or HF_NO_MEMORY. If the fit does not converge (fit->converged), the
- * status is still HF_OK. */
+/* Fits a surface to n points with the positions position_m [3][n] in m. The weight of a point is the square of its
+ * entry in root_weight [n]. If root_weight is NULL, all weights are equal. The argument `kind` must not be
+ * HF_SURFACE_AUTO. The argument focal_length_m is the focal length of the target surface in m. If there are fewer than
+ * six points, the fit is not unique. Call gsl_set_error_handler_off() before this function (see hifdm.h). Returns HF_OK
+ * or HF_NO_MEMORY. If the fit does not converge, the status is HF_OK and fit->converged is false. */
 hf_status hf_surface_fit_points(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                                 const double *root_weight, hf_surface_fit *fit);
 
-/* Computes the errors error_m [n] in m of the n points position_m [3][n], along the normal of a fitted surface of this
- * kind. The errors are NaN if the fit did not converge. */
+/* Computes the errors of the n points position_m [3][n] along the normal of a fitted surface of this kind. The array
+ * error_m [n] receives the errors in m. If the fit did not converge, the errors are NaN. */
 void hf_surface_fit_errors(hf_surface_kind kind, const hf_surface_fit *fit, int n, const double *position_m,
                            double *error_m);
 
-/* The surface errors of a shape, and its losses as a reflector. */
+/* Contains the surface errors of a shape and its losses as a reflector. */
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)
-    /* Figures of the best fit to the inner nodes. */
+    /* Contains the best fit to the inner nodes. */
     hf_surface_fit fit;
 #define HF_SURFACE_LOSS_MEMBER(member, description) double member[HF_LIST_MAX];
     HF_SURFACE_LOSS_LIST(HF_SURFACE_LOSS_MEMBER)
 } hf_surface_measures;
 
-/* Measures the inner nodes of a shape and the facets between them. The array position_m [3][n_node] has the positions
- * by row in m, and tension_N [n_cable] has the tensions. The focal length settings->focal_length_m must be above 0, and
- * settings->kind must not be HF_SURFACE_AUTO. The facets must belong to the scene of the model. Call
- * gsl_set_error_handler_off() before this function (see hifdm.h). Returns HF_OK, or HF_NO_MEMORY with all figures set
- * to zero. */
+/* Measures the inner nodes of a shape and the facets between them. The array position_m [3][n_node] contains the
+ * positions in m, and the array tension_N [n_cable] contains the tensions in N. The focal length
+ * settings->focal_length_m must be above 0. The kind settings->kind must not be HF_SURFACE_AUTO. The facets must belong
+ * to the scene of the model. Call gsl_set_error_handler_off() before this function (see hifdm.h). Returns HF_OK, or
+ * HF_NO_MEMORY with all values set to zero. */
 hf_status hf_surface_measure(const hf_surface_settings *settings, const hf_facets *facets, const hf_model *model,
                              const double *position_m, const double *tension_N, hf_surface_measures *measures);
 
-/* Sets all figures except the counts to NaN. This function is for a net whose inner nodes are all loose, because the
+/* Sets all values except the counts to NaN. Call this function if all inner nodes of a net are loose, because the
  * positions of loose nodes have no meaning. */
 void hf_surface_blank(hf_surface_measures *measures);
 
-/* The errors by which a shape is judged. The errors are those of the facets or of the nodes of the shape, before and
- * after the best fit. The gain losses [frequencies_Hz.n] point to the arrays of the measures. */
+/* Contains the errors by which hifdm judges a shape. The errors belong to the facets or to the nodes of the shape,
+ * before and after the best fit. The pointers to the gain losses refer to the arrays of hf_surface_measures. */
 typedef struct {
     double half_path_rms_m, fit_half_path_rms_m;   /* RMS of the half-path error, before and after the best fit */
     const double *gain_loss_dB, *fit_gain_loss_dB; /* [frequencies_Hz.n] gain losses that these errors cause */
 } hf_surface_errors;
 
-/* Returns the errors of the facets. If of_facets is false, returns the errors of the nodes. */
+/* Returns the errors of the facets or, if of_facets is false, of the nodes. */
 hf_surface_errors hf_surface_errors_of(const hf_surface_measures *measures, bool of_facets);
 
-/* Gain loss in dB that defines the maximum frequency of a reflector. */
+/* Defines the gain loss in dB at the maximum frequency of a reflector. */
 #define HF_SURFACE_GOOD_TO_DB 1.0
 
-/* Maximum gain loss in dB for which Ruze's formula holds. The formula requires errors that are small compared with a
- * wavelength. The maximum corresponds to an RMS of lambda/15. */
+/* Ruze's formula holds for gain losses up to HF_RUZE_MOST_DB. Ruze's formula requires errors that are small compared
+ * with the wavelength. This maximum gain loss corresponds to an RMS error of lambda/15 for the wavelength lambda. */
 #define HF_RUZE_MOST_DB 3.0
 
-/* Returns the highest of the frequencies frequencies_Hz in Hz, or 0 if there is none. */
+/* Returns the maximum of the frequencies frequencies_Hz in Hz, or 0 if no frequency is given. */
 double hf_surface_highest_Hz(const hf_surface_settings *settings);
 
 /* Returns the positive gain loss in dB that a half-path RMS causes at a frequency, by Ruze's formula (M17). Returns NaN
@@ -168,8 +169,8 @@ double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 /* Returns the gain loss in dB by Ruze's formula (M17) for errors of any size. */
 double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
 
-/* Returns the frequency in Hz at which a half-path RMS causes the gain loss loss_dB, for 0 < loss_dB <=
- * HF_RUZE_MOST_DB. Returns INFINITY for an RMS of 0. */
+/* Returns the frequency in Hz at which a half-path RMS causes the gain loss loss_dB. The gain loss must be above 0 and
+ * at most HF_RUZE_MOST_DB. Returns INFINITY for an RMS of 0. */
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB);
 
 HF_API_END

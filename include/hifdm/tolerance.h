@@ -1,7 +1,7 @@
 /* tolerance - the effect of errors of cut lengths, stiffness, supports and temperature on an as-built net.
  * Stability: internal. This header may change in any version.
  *
- * The effect of the errors is computed to first order, and from samples that are solved (METHOD section 12). Pipeline:
+ * hifdm computes the effect of the errors to first order and from solved samples (METHOD section 12). Pipeline:
  *
  *   errors of the case (hf_tolerance_settings) -> samples -> a row of measures for each -> hf_tolerance_summary
  *
@@ -14,7 +14,7 @@
 
 HF_API_BEGIN
 
-/* Columns of the row of a sample: hf_status, psi in m to first order for the same errors, and the measures. A value
+/* The row of a sample contains its hf_status, psi in m to first order for the same errors, and the measures. A value
  * that is not measured is NaN. If a sample has no shape, all its measures are NaN. */
 enum { HF_TOLERANCE_STATUS, HF_TOLERANCE_LINEAR_PSI, HF_TOLERANCE_FIRST };
 #define HF_TOLERANCE_COLUMNS (HF_TOLERANCE_FIRST + HF_TOLERANCE_N_MEASURE)  /* number of columns */
@@ -22,19 +22,20 @@ extern const char *const hf_tolerance_measure_unit[HF_TOLERANCE_N_MEASURE]; /* u
 extern const char *const hf_tolerance_measure_help[HF_TOLERANCE_N_MEASURE]; /* descriptions of the measures */
 
 /* Number of reported quantiles. A quantile is a value that a given share of the samples does not exceed. If a larger
- * value is better, it is a value that this share does not fall below. */
+ * value is better, the quantile is a value that the given share of the samples does not fall below. */
 #define HF_TOLERANCE_QUANTILES 3
 extern const double hf_tolerance_quantile[HF_TOLERANCE_QUANTILES]; /* shares of the samples: 0.5, 0.95, 0.99 */
 /* Returns true if a larger value of the measure is better, as for the minimum tension. */
 bool hf_tolerance_more_is_better(hf_tolerance_measure measure);
 
-/* Statistics of one measure over the samples. Mean, standard deviation, minimum and maximum include only the samples
- * that have a value. Quantiles include all samples. A sample without a value counts as the worst, which is infinite.
- * NaN means that a value is unknown. There is no mean of infinite values.
+/* Contains the statistics of one measure over the samples. Mean, standard deviation, minimum and maximum include only
+ * the samples that have a value. Quantiles include all samples. For quantiles, a sample without a value is the worst
+ * sample and has an infinite value. NaN means that a value is unknown. Infinite values have no mean value.
  *
- * The confidence intervals contain the true value with a probability of 95 %. The intervals of quantiles are order
- * statistics, which need no assumption about the distribution. The intervals of quantiles are NaN if there are too few
- * samples. The interval of the mean follows from its standard error. */
+ * Each confidence interval contains the true value with a probability of 95 %. The confidence intervals of quantiles
+ * are order statistics. Order statistics require no assumption about the distribution. If there are too few samples,
+ * the confidence intervals of quantiles are NaN. The confidence interval of the mean follows from the standard error of
+ * the mean. */
 typedef struct {
     bool is_measured; /* false: the other members have no meaning */
     /* mean and its interval, standard deviation, minimum, maximum */
@@ -85,7 +86,7 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
     X(double, tolerance_wall_s, REAL, .json = 5, .key = "wall_s", .description = "wall-clock time")
 
 #define HF_TOLERANCE_MEMBER(type, member, ...) type member;
-/* The result of the tolerance analysis. */
+/* Contains the result of the tolerance analysis. */
 typedef struct {
     HF_TOLERANCE_LIST(HF_TOLERANCE_MEMBER)
     hf_tolerance_figures figure[HF_TOLERANCE_N_MEASURE]; /* statistics by hf_tolerance_measure */

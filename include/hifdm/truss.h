@@ -1,9 +1,9 @@
 /* truss - the deployable truss that carries the net: nodes, straight members and supports.
  * Stability: stable.
  *
- * A generator makes a truss, or truss_import reads it from CSV files. A truss is checked once and does not change
- * afterwards. hf_frame solves it. A node has six degrees of freedom (dofs): displacements along x, y, z in m, and
- * rotations about x, y, z in rad. */
+ * A generator makes a truss, or truss_import reads a truss from CSV files. A truss is checked once and does not change
+ * afterwards. The functions in frame.h solve a truss. A node has six degrees of freedom (dofs): displacements along x,
+ * y, z in m, and rotations about x, y, z in rad. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -18,10 +18,10 @@ HF_API_BEGIN
 /* A rigid member is a beam that is clamped to its two nodes. A pinned member carries only axial force. */
 typedef enum { HF_JOINT_RIGID, HF_JOINT_PINNED } hf_joint;
 
-/* The unit to which a member belongs. BUD, MBUG and ABUG are the basic units of the deployable structure (Fig. 15). BUD
- * lies along the directrix. MBUG and ABUG are the main and assistant units along the generatrix. LONGERON, VERTICAL and
- * DIAGONAL are the parts of a ring truss. Longerons run along a ring, verticals connect the rings, and diagonals cross
- * a bay. */
+/* States the unit to which a member belongs. BUD, MBUG and ABUG are the basic units of the deployable structure (Fig.
+ * 15). BUD lies along the directrix. MBUG and ABUG are the main and assistant units along the generatrix. LONGERON,
+ * VERTICAL and DIAGONAL are the parts of a ring truss. Longerons run along a ring, verticals connect the rings, and
+ * diagonals cross a bay. */
 typedef enum {
     HF_UNIT_BUD,
     HF_UNIT_MBUG,
@@ -37,13 +37,14 @@ extern const char *const hf_dof_word[HF_TRUSS_DOF]; /* "ux", "uy", "uz", "rx", "
 extern const char *const hf_joint_word[3];          /* "rigid", "pinned", NULL */
 extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", "abug", "other", "longeron", ... */
 
-/* X(name in struct and files, units, default if a file has no value, description): numerical properties of a member. A
- * property whose default is NaN is required.
+/* Each row X(name in struct and files, units, default if a file has no value, description) defines a numerical property
+ * of a member. A property whose default is NaN is required.
  *
- * In the local axes of a member, x runs from end i to end j. The axis y is horizontal, (-x_y, x_x, 0) normalised, or
- * the global y for a vertical member. The axis z is x cross y. The angle roll rotates y and z about x. Iz resists
- * bending in the plane of x and y, with the shear area Asy. Iy resists bending in the plane of x and z, with the shear
- * area Asz. An infinite shear area gives a beam of Euler and Bernoulli. */
+ * In the local axes of a member, x runs from end i to end j. The axis y is the horizontal unit vector along (-x_y, x_x,
+ * 0). For a vertical member, y is the global y axis. The axis z is the cross product of x and y. The angle roll rotates
+ * the axes y and z about the axis x. The second moment of area Iz resists bending in the plane of x and y, with the
+ * shear area Asy. The second moment of area Iy resists bending in the plane of x and z, with the shear area Asz. An
+ * infinite shear area makes the member an Euler-Bernoulli beam. */
 #define HF_MEMBER_NUMBERS(X)                                                                                           \
     X(E_Pa, "Pa", NAN, "Young's modulus")                                                                              \
     X(A_m2, "m2", NAN, "cross-section")                                                                                \
@@ -57,7 +58,7 @@ extern const char *const hf_unit_word[HF_N_UNIT];   /* "bud", "mbug", "abug", "o
     X(density_kg_per_m3, "kg/m3", 0, "density")                                                                        \
     X(expansion_per_K, "1/K", 0, "coefficient of thermal expansion")
 
-/* The nodes, members and supports of a truss. */
+/* Contains the nodes, the members and the supports of a truss. */
 typedef struct {
     int n_node, n_member; /* number of nodes and number of members */
     double *position_m;   /* [n_node][3] positions */
@@ -75,8 +76,8 @@ typedef struct {
     void *block, *text;                    /* owned memory behind all arrays above */
 } hf_truss;
 
-/* Returns true if member i_member belongs to this part of the truss. A part below HF_PART_UNIT is the whole truss. A
- * part from HF_PART_UNIT on is one unit. */
+/* Returns true if member i_member belongs to this part of the truss. If `part` is below HF_PART_UNIT, the part is the
+ * whole truss. If `part` is HF_PART_UNIT or above, the part is one unit. */
 static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part part)
 {
     return part < HF_PART_UNIT || (int)truss->unit[i_member] == (int)part - HF_PART_UNIT;
@@ -84,22 +85,22 @@ static inline bool hf_truss_is_of(const hf_truss *truss, int i_member, hf_part p
 
 /* ---- the generated trusses ---- */
 
-/* Diagonals of a panel or of a bay. */
+/* Selects the diagonals of a panel or of a bay. */
 typedef enum { HF_DIAGONALS_NONE, HF_DIAGONALS_SINGLE, HF_DIAGONALS_CROSSED } hf_diagonals;
-/* Beam theory, which determines the shear areas. */
+/* The beam theory determines the shear areas. */
 typedef enum { HF_THEORY_EULER_BERNOULLI, HF_THEORY_TIMOSHENKO } hf_theory;
-/* Nodes that the spacecraft holds: the corners of the central module, or only its rear corners. */
+/* The spacecraft holds all corners of the central module, or only its rear corners. */
 typedef enum { HF_HELD_CENTRAL_MODULE, HF_HELD_CENTRAL_MODULE_REAR } hf_held;
-/* Degrees of freedom that are held at these nodes. */
+/* Selects the degrees of freedom that the spacecraft holds at the held nodes. */
 typedef enum { HF_HELD_ALL_DOFS, HF_HELD_TRANSLATIONS } hf_held_dofs;
-/* Joints of a ring truss that are held. */
+/* Selects the joints of a ring truss that are held. */
 typedef enum { HF_RING_HELD_BAY, HF_RING_HELD_VERTICAL, HF_RING_HELD_THREE_VERTICALS } hf_ring_held;
 
-/* Words of hf_diagonals in a case file. The last entry of the array is NULL. */
+/* Contains the words of hf_diagonals in a case file. The last entry of the array is NULL. */
 extern const char *const hf_diagonals_word[4];
 
-/* A basic unit of the truss. A basic unit is a planar truss with the length of one module. Its chords, posts and
- * diagonals are round tubes of the same size. */
+/* Describes a basic unit of the truss. A basic unit is a planar truss with the length of one module. The chords, posts
+ * and diagonals of a basic unit are round tubes of the same size. */
 typedef struct {
     double diameter_m, wall_m; /* outer diameter and wall thickness of the tube */
     int panels;                /* number of panels in the length of a module */
@@ -111,9 +112,9 @@ typedef struct {
     double diameter_m, wall_m; /* outer diameter and wall thickness */
 } hf_tube;
 
-/* A hoop truss under the rim of a paraboloid. The front ring runs through the supports of the front net. The rear ring
- * is vertically below the front ring and runs through the supports of the rear net. Verticals divide the rings into
- * bays. */
+/* Describes a hoop truss under the rim of a paraboloid. The front ring runs through the supports of the front net. The
+ * rear ring is vertically below the front ring and runs through the supports of the rear net. Verticals divide the
+ * rings into bays. */
 typedef struct {
     double height_m;      /* distance of the rings along z; 0: the distance between the rims of the two nets */
     int cells_per_bay;    /* number of gaps between supports in a bay along the rim */
@@ -123,7 +124,7 @@ typedef struct {
     hf_tube longeron, vertical, diagonal; /* tubes of the members */
 } hf_truss_ring;
 
-/* Settings of the truss of a case (section truss). */
+/* Contains the settings of the truss of a case (section `truss`). */
 typedef struct {
     double depth_m; /* distance of the rear chords from the surface along its normal, for all units */
     /* every main_every-th generatrix line, counted from both edges, has MBUG units; the others have ABUG units */
@@ -139,9 +140,9 @@ typedef struct {
     hf_truss_ring ring;        /* settings of the ring truss, which replaces the units */
 } hf_truss_settings;
 
-/* Keys of the section truss and of each of its units. The macro arguments are the defaults of the diameter and of the
- * number of panels. Each key is a row X(section, member, type, minimum, maximum, default, unit, words, help) of
- * hf_field_table (config.h). */
+/* Defines the keys of the `truss` section and of each of its units. The macro arguments are the default diameter of the
+ * tubes and the default number of panels. Each row X(section, member, type, minimum, maximum, default, unit, words,
+ * help) defines a key in hf_field_table (config.h). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
     X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
       "The key `depth_m` sets the distance between the front chords and the rear chords, along the normal of the "     \
@@ -186,7 +187,8 @@ typedef struct {
     X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                        \
       "The key `diagonals` selects no diagonals, single diagonals or crossed diagonals for the panels")
 
-/* Keys of the section truss.ring and of each of its tubes. The macro argument is the default of the diameter. */
+/* Defines the keys of the section truss.ring and of each of its tubes. The macro argument is the default diameter of
+ * the tubes. */
 #define HF_RING_KEYS(X, section)                                                                                       \
     X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
       "The key `height_m` sets the distance of the rear ring below the front ring, along z. By default, the distance " \
@@ -231,37 +233,38 @@ hf_status hf_truss_generate(const hf_truss_settings *settings, const hf_cylinder
 hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, hf_truss *truss,
                                  hf_messages *messages);
 
-/* Returns the key of truss.ring whose value cannot be realised. Writes the reason to what[size]. A size of
- * HF_GENERATE_FAULT_SIZE is sufficient. Returns NULL if there is no fault. */
+/* Returns the key of truss.ring whose value cannot be realised. Writes the reason to what[size]. A buffer of
+ * HF_GENERATE_FAULT_SIZE bytes is sufficient. Returns NULL if there is no fault. */
 const char *hf_truss_ring_fault(const hf_truss_settings *settings, const hf_paraboloid *paraboloid, char *what,
                                 size_t size);
 
 /* ---- any truss ---- */
 
-/* Finds the node of the truss that carries each support of the net. The function selects the nearest node, at a
- * distance of at most tolerance_m. The arrays scene_node and truss_node must have space for scene->n_node indices. The
- * function sets the first *n_attachment indices in each of them. Returns HF_OK, or HF_BAD_CASE with messages that list
- * the supports without such a node. */
+/* Finds the node of the truss that carries each support of the net. The function selects the nearest node within the
+ * distance tolerance_m. The arrays scene_node and truss_node must have space for scene->n_node indices. The function
+ * sets the first *n_attachment entries of both arrays. Returns HF_OK, or HF_BAD_CASE with messages that list the
+ * supports without a node within this distance. */
 hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
                           int *scene_node, int *truss_node, hf_messages *messages);
 
-/* Allocates a truss of this size with all values zero. The argument with_line states whether the line numbers exist.
- * Returns HF_OK or HF_NO_MEMORY. */
+/* Allocates a truss with n_node nodes and n_member members. All values of the truss are zero. The argument with_line
+ * states whether the line numbers exist. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_truss_allocate(hf_truss *truss, int n_node, int n_member, bool with_line);
 /* Frees the memory of the truss. */
 void hf_truss_free(hf_truss *truss);
 
-/* Checks the rules that every truss must satisfy, whether it is generated or read. Numbers must be finite, stiffness
- * must be above zero, and each member needs two different ends and a length. The function writes a message with file,
- * line and id for each fault, up to a maximum number of messages. Returns HF_OK or HF_BAD_CASE. */
+/* Checks the rules that every generated or imported truss must satisfy. All numbers must be finite, and stiffness must
+ * be above zero. Each member needs two different ends and a length. The function writes a message with file, line and
+ * id for each fault, up to a maximum number of messages. Returns HF_OK or HF_BAD_CASE. */
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
-/* Size of the text of hf_truss_describe. The size is sufficient for a path of HF_PATH_SIZE bytes, a line and an id of
- * 255 bytes, the maximum in a table. */
+/* Defines the size in bytes of the buffer for hf_truss_describe. The size is sufficient for a path of HF_PATH_SIZE
+ * bytes, a line number and an id of 255 bytes. The ids in tables have at most 255 bytes. */
 #define HF_TRUSS_DESCRIPTION_SIZE (HF_PATH_SIZE + 300)
 
-/* Writes a description for messages to text[size], such as "truss_nodes.csv:7: node 'a'". If the truss has no file, the
- * text is "truss: node 'a'". A text that does not fit is truncated. */
+/* Writes a description such as "truss_nodes.csv:7: node 'a'" to text[size] for use in messages. If the truss has no
+ * file, the function writes, for example, "truss: node 'a'". If the description does not fit into the buffer, the
+ * function truncates the description. */
 void hf_truss_describe(const hf_truss *truss, bool is_member, int index, char *text, size_t size);
 
 /* Returns the length of member i_member in m. */

@@ -2,9 +2,9 @@
  * fields.
  * Stability: stable.
  *
- * After hf_form_find and hf_evaluate, the workspace holds the last shape. The shape consists of position_m, q_N_per_m,
- * length_m and tension_N, the laws and target values in effect, loose, and displacement_m of the attachments. After a
- * coupling, the workspace also holds attachment_force_N. All other fields are scratch memory and have no meaning
+ * After hf_form_find and hf_evaluate, the workspace contains the last shape. The shape consists of position_m,
+ * q_N_per_m, length_m, tension_N, displacement_m and loose, and of the laws and target values in effect. After a
+ * coupling, the workspace also contains attachment_force_N. All other fields are scratch memory and have no meaning
  * between calls. The scratch fields may change in any version. */
 #pragma once
 
@@ -15,28 +15,30 @@
 
 HF_API_BEGIN
 
-/* Number of unknowns of Newton's matrix, without and with the attachments. */
+/* Newton's matrix has HF_NEWTON_DOFS unknowns without the attachments and HF_NEWTON_MOVES unknowns with the
+ * attachments. */
 #define HF_NEWTON_DOFS(m) ((m)->has_newton ? 3 * (size_t)(m)->n_free : 0)
 #define HF_NEWTON_MOVES(m) ((m)->has_newton ? 3 * (size_t)((m)->n_free + (m)->n_attachment) : 0)
 
-/* Number of past displacements and steps that the accelerated coupling combines, and the number of doubles that they
- * need. */
+/* The accelerated coupling combines HF_COUPLING_DEPTH past displacements and steps. These data need HF_COUPLING_ITEMS
+ * doubles. */
 #define HF_COUPLING_DEPTH 8
 #define HF_COUPLING_ITEMS(m) (3 * (size_t)(m)->n_attachment * (2 * HF_COUPLING_DEPTH + 4))
 
-/* Number of attachments whose columns are solved together, and the number of doubles in the dense matrices of net and
- * truss (src/solve/schur.h). */
+/* The solver solves the columns of HF_SCHUR_PANEL attachments together. The dense matrices of net and truss need
+ * HF_SCHUR_ITEMS doubles (src/solve/schur.h). */
 #define HF_SCHUR_PANEL 16
 #define HF_SCHUR_COLUMNS(m) (3 * ((size_t)(m)->n_attachment + HF_SCHUR_PANEL * 3 * (size_t)(m)->n_free))
 #define HF_SCHUR_ITEMS(m) (27 * (size_t)(m)->n_attachment * (size_t)(m)->n_attachment + HF_SCHUR_COLUMNS(m))
 
-/* Number of doubles for the primal-dual path (src/solve/path_kernel.h). Each block of eight cables needs
+/* The primal-dual path needs HF_INTERIOR_ITEMS doubles (src/solve/path_kernel.h). Each block of eight cables needs
  * HF_INTERIOR_BLOCK doubles. */
 #define HF_INTERIOR_BLOCK 416
 #define HF_INTERIOR_ITEMS(m) (HF_INTERIOR_BLOCK * (((size_t)(m)->n_cable + 7) / 8))
 
-/* Numbers of doubles for the error bound of the certificate: for each cable (src/solve/precise.h), for the truss
- * (src/solve/flexibility.h), and in total. The solver processes HF_BOUND_CHUNK rows of the band at a time. */
+/* The error bound of the certificate needs HF_BOUND_ITEMS doubles in total. Each cable needs HF_BOUND_CABLE_ITEMS
+ * doubles (src/solve/precise.h), and the truss needs HF_BOUND_TRUSS_ITEMS doubles (src/solve/flexibility.h). The solver
+ * processes HF_BOUND_CHUNK rows of the band at a time. */
 #define HF_BOUND_CABLE_ITEMS 14
 #define HF_BOUND_CHUNK 128
 #define HF_BOUND_WINDOW(m) (3 * (size_t)(m)->n_attachment * (3 * (size_t)(m)->half_bandwidth + 2 + HF_BOUND_CHUNK))
@@ -46,8 +48,8 @@ HF_API_BEGIN
     (HF_BOUND_CABLE_ITEMS * (size_t)(m)->n_cable + 6 * (size_t)(m)->n_node +                                           \
      16 * (size_t)((m)->n_free + (m)->n_attachment) + HF_BOUND_TRUSS_ITEMS(m))
 
-/* Each field is one row X(type, name, number of items for a model m, unit, meaning). The solver of a net with struts
- * needs a general band matrix and pivots. Nets without struts need neither. */
+/* Each row X(type, name, number of items for a model m, unit, meaning) defines one field. The solver of a net with
+ * struts needs a general band matrix and pivots. Nets without struts need neither. */
 #define HF_WORKSPACE_FIELDS(X)                                                                                         \
     X(double, position_m, 3 * (size_t)m->n_node, "m", "[3][n_node] by row, supports included")                         \
     X(double, band, (size_t)m->n_band + 1, "N/m", "lower band of D, then its Cholesky factor; one spare place")        \
@@ -91,14 +93,15 @@ HF_API_BEGIN
       "[3][n_node] of a design's supports")                                                                            \
     X(int, pivot, m->has_strut ? (size_t)m->n_free : 0, "", "struts")
 
-/* The fields of HF_WORKSPACE_FIELDS and the state of the solver. Only one thread at a time may use a workspace. */
+/* Contains the fields of HF_WORKSPACE_FIELDS and the state of the solver. Only one thread at a time may use a
+ * workspace. */
 typedef struct {
 #define HF_WORKSPACE_MEMBER(type, name, count, unit, meaning) type *name;
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
     void *block; /* owned memory behind the fields */
-    /* Number of rows that Newton's matrix moves. The number is n_free, plus the attachments if net and truss are solved
-     * together. */
+    /* Number of rows that Newton's matrix moves. The number is n_free. If net and truss are solved together, the number
+     * also includes the attachments. */
     int n_moving;
     bool starts_near;                  /* q_N_per_m is that of a shape whose supports have other positions */
     int n_joint_step;                  /* number of joint steps of net and truss in the current solve */
@@ -117,15 +120,16 @@ static inline hf_law_cable hf_workspace_cable(const hf_model *model, const hf_wo
     return cable;
 }
 
-/* Returns the force density in N/m of cable i_cable for the shape in the workspace. The force density follows from the
- * tension that the law of the cable gives. If the law gives no tension, the force density is q_N_per_m of the cable. */
+/* Returns the force density in N/m of cable i_cable for the shape in the workspace. If the law of the cable determines
+ * the tension, the force density follows from this tension. If the law determines no tension, the force density is
+ * q_N_per_m of the cable. */
 static inline double hf_workspace_held_q_N_per_m(const hf_model *model, const hf_workspace *workspace, int i_cable)
 {
     return hf_law_held_q_N_per_m(hf_workspace_cable(model, workspace, i_cable), workspace->length_m[i_cable],
                                  workspace->q_N_per_m[i_cable]);
 }
 
-/* Allocates a workspace and loads LAPACK, which the solvers call. Returns HF_OK, HF_NO_MEMORY or HF_NO_LAPACK. Call
+/* Allocates a workspace and loads LAPACK for the solvers. Returns HF_OK, HF_NO_MEMORY or HF_NO_LAPACK. Call
  * hf_workspace_free even if hf_workspace_create fails. */
 hf_status hf_workspace_create(const hf_model *model, hf_workspace *workspace);
 /* Returns the number of bytes that hf_workspace_create allocates. */
@@ -133,8 +137,8 @@ size_t hf_workspace_bytes(const hf_model *model);
 /* Frees the fields. */
 void hf_workspace_free(hf_workspace *workspace);
 
-/* Returns true if the law in effect of at least one cable changes the force density of the cable between iterations
- * (Eqs. 7, 8). */
+/* Returns true if the law of at least one cable changes the force density of the cable between iterations (Eqs. 7,
+ * 8). */
 bool hf_workspace_iterates(const hf_model *model, const hf_workspace *workspace);
 
 HF_API_END
