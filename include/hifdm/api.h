@@ -2,9 +2,9 @@
  * Stability: stable.
  *
  * Each public header declares its functions and variables between HF_API_BEGIN and HF_API_END. The declared functions
- * and variables have C linkage, and libhifdm.so exports them. The library is compiled with -fvisibility=hidden, so all
- * other symbols are hidden. The command `make abi` compares the symbols that the library exports with the symbols that
- * the headers declare. */
+ * and variables have C linkage, and libhifdm.so exports them. The library is compiled with -fvisibility=hidden. Symbols
+ * without a declaration in a public header are therefore hidden. The command `make abi` compares the symbols that the
+ * library exports with the symbols that the headers declare. */
 #pragma once
 
 #ifdef __cplusplus

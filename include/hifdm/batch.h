@@ -39,8 +39,8 @@ typedef struct {
 hf_status hf_batch_create(const hf_evaluator *evaluator, int n_thread, hf_batch *batch);
 
 /* Evaluates each of the n designs whose entry in pending [n] is not 0. If `pending` is NULL, the function evaluates all
- * n designs. The array design [n][n_variable] holds the values of the design variables. Boundary pretensions are in N.
- * Design variables of cables must have values above 0. The array result [n] receives the results of the evaluated
+ * n designs. The array design [n][n_variable] contains the values of the design variables. Boundary pretensions are in
+ * N. Design variables of cables must have values above 0. The array result [n] receives the results of the evaluated
  * designs.
  *
  * One thread computes the complete form-finding of a design. The result of a design depends neither on the number of
@@ -52,7 +52,7 @@ void hf_batch_run(hf_batch *batch, int n, const double *design, const unsigned c
  * results are the same as after a call of hf_optimiser_next and a call of hf_batch_run. The calling thread first calls
  * beside(context) once, unless `beside` is NULL. The other threads start their work while `beside` runs. The callback
  * `beside` must not read the population of the optimiser. The callback `beside` may read a copy of the population
- * struct if the caller makes the copy before the call. Returns false if no generation is left. If no generation is
+ * struct if the caller makes the copy before hf_batch_next. Returns false if no generation is left. If no generation is
  * left, the function only calls `beside`. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
@@ -62,7 +62,7 @@ bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void
  * matrix. If hf_evaluate solves each design separately, the threads share no data.
  *
  * Returns the solver that later evaluations use. If the matrix cannot be factored at the design `initial`, or if memory
- * runs out, the threads share no data. Without shared data, the function may return another solver. Results of
+ * runs out, the threads share no data. If the threads share no data, the function may return another solver. Results of
  * different solvers differ in the last bits. If memory runs out, the function sets batch->lacks_memory to true. */
 hf_solver hf_batch_share(hf_batch *batch, const double *initial);
 
@@ -76,19 +76,19 @@ int hf_batch_default_threads(void);
 /* Makes threads sleep after they have waited a few microseconds for other threads. Call hf_batch_wait_quietly at the
  * beginning of main with the argument argv of main. The function sets GOMP_SPINCOUNT=2000 and OMP_WAIT_POLICY=passive
  * in the environment and restarts the program. The restart is necessary because OpenMP reads its environment variables
- * only once, before main begins. OpenMP has no function that changes these variables at run time. If GOMP_SPINCOUNT or
- * OMP_WAIT_POLICY is already set, as in the restarted program, the function does nothing. If the path of the program
+ * only once, before main begins. OpenMP has no function that changes the waiting policy at run time. If GOMP_SPINCOUNT
+ * or OMP_WAIT_POLICY is already set, as in the restarted program, the function does nothing. If the path of the program
  * cannot be read, or if the dynamic linker was called to run the program, the function does nothing.
  *
- * By default, a waiting OpenMP thread spins for about as long as a generation takes, less than a millisecond. The
- * default therefore triples the processor time of small batches. In a measurement on two cores that other programs kept
- * busy, the default made runs 30 times slower. If waiting threads slept immediately, a run on an idle machine would
- * take 10 to 20 % longer. A program that loads the library at run time must set GOMP_SPINCOUNT and OMP_WAIT_POLICY
- * before it does so. An interpreter is such a program. */
+ * By default, a waiting OpenMP thread spins for about as long as a generation takes, which is less than a millisecond.
+ * The default waiting policy therefore triples the processor time of small batches. In a measurement on two cores that
+ * other programs kept busy, the default waiting policy made runs 30 times slower. If waiting threads slept immediately,
+ * a run on an idle machine would take 10 to 20 % longer. Interpreters and other programs that load the library at run
+ * time must set GOMP_SPINCOUNT and OMP_WAIT_POLICY beforehand. */
 void hf_batch_wait_quietly(char *const *argv);
 
 /* Evaluates one design, the array design [n_variable], in the calling thread. The result is bit-for-bit identical to
- * the result of hf_batch_run. Returns the workspace that holds the shape of the design. The shape is valid until the
+ * the result of hf_batch_run. Returns the workspace that contains the shape of the design. The shape is valid until the
  * next call with this batch. The batch owns the returned workspace. */
 hf_workspace *hf_batch_run_one(hf_batch *batch, const double *design, hf_form_result *result);
 

@@ -16,7 +16,7 @@
 HF_API_BEGIN
 
 /* As-built net of a design. The model of the as-built net has the same nodes and cables as the model of the design, in
- * the same order. The as-built net must not outlive the scene, and it must not be moved in memory. */
+ * the same order. The as-built net must not outlive the scene. The as-built net must not be moved in memory. */
 typedef struct {
     hf_scene scene; /* scene of the design with its own laws, target values, EA and supports; the rest is borrowed */
     hf_model model; /* model with elastic cables that have their unstressed lengths, on the truss of the design */
@@ -60,9 +60,9 @@ typedef struct {
 } hf_built_net;
 
 /* Finds the shape of one as-built net from the unstressed lengths of its cables. This function does not use the nominal
- * shape. This function is the reference for faster methods. The workspace must belong to built->model. After the call,
- * the workspace contains the shape of the net. The function counts the nodes that no taut cable holds and determines
- * their positions (METHOD section 4). Returns result->status. */
+ * shape. The function hf_built_solve is the reference for faster methods. The workspace must belong to built->model.
+ * After the call, the workspace contains the shape of the net. The function counts the nodes that no taut cable holds
+ * and determines their positions (METHOD section 4). Returns result->status. */
 hf_status hf_built_solve(const hf_built *built, const hf_built_net *net, hf_workspace *workspace,
                          hf_form_result *result);
 

@@ -8,8 +8,8 @@
  *   hf_built_take     receives shape and result -> measures of the caller
  *
  * The header built.h describes the as-built net and its possible differences from the nominal net. The function
- * hf_built_solve is the reference for this solver. A batch and hf_built_solve return the same statuses and counts.
- * Their shapes agree within the residual tolerance. */
+ * hf_built_solve is the reference for this solver. A batch and hf_built_solve return the same statuses and counts. The
+ * shapes of a batch and of hf_built_solve agree within the residual tolerance. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -34,7 +34,7 @@ typedef struct {
 } hf_built_shape;
 
 /* Defines sample i. On entry, the arrays cut_m [n_cable] and EA_N [n_cable] contain the nominal values, and the array
- * support_displacement_m [3][n_node] contains zeros. The callback changes these arrays to the values of sample i. The
+ * support_displacement_m [3][n_node] contains zeros. The callback changes the arrays to the values of sample i. The
  * struct hf_built_net describes the arrays cut_m, EA_N and support_displacement_m. If the stiffness does not vary, EA_N
  * is NULL. If the supports do not vary, support_displacement_m is NULL. Several threads may call the callback at the
  * same time. The callback may be called more than once for the same sample. The values that the callback writes must
@@ -67,8 +67,8 @@ const hf_workspace *hf_built_batch_find(hf_built_batch *batch, const hf_built_ne
  * built->stop is set, the function ends early. The argument `varies` is 0 or a combination of the flags
  * HF_BUILT_VARIES_... The values of a sample alone determine every bit of its result. The number of threads, the other
  * samples and the instruction set do not change any bit of a result. The result contains the same quantities as a
- * result of hf_built_solve. Only the numbers of iterations and of coupling steps differ because they count the steps of
- * the faster method. */
+ * result of hf_built_solve. Only the numbers of iterations and of coupling steps differ from the results of
+ * hf_built_solve. A batch counts the steps of the faster method. */
 void hf_built_batch_run(hf_built_batch *batch, unsigned varies, long first, long n, hf_built_sample *make,
                         hf_built_take *take, void *context);
 

@@ -9,8 +9,8 @@
  * flags that defines the laws that the kernel can solve (hf_law_is_served). If a net contains a law that the kernel
  * cannot solve, another method solves the net.
  *
- * Lengths are in m, tensions in N and force densities in N/m. The order of the floating-point operations must not
- * change because it determines the last bits of stored data sets. */
+ * Lengths are in m, tensions in N and force densities in N/m. The order of the floating-point operations determines the
+ * last bits of stored data sets and must not change. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -50,7 +50,7 @@ enum {
       HF_LAW_ITERATES | HF_LAW_IS_CONVEX | HF_LAW_HAS_MULTIPLIER | HF_LAW_GOES_SLACK | HF_LAW_NEEDS_EA)
 
 #define HF_LAW_NAME(name, word, target, unit, flags) name,
-/* The law of a cable. Files contain the values of this enumeration. */
+/* The law of a cable. Files contain the values of the enumeration hf_law. */
 typedef enum { HF_LAW_LIST(HF_LAW_NAME) } hf_law;
 #undef HF_LAW_NAME
 
@@ -71,7 +71,7 @@ typedef struct {
     double length_at_target_m; /* distance between the target positions of the ends of the cable */
 } hf_law_cable;
 
-/* Returns true if the law has at least one of these flags. */
+/* Returns true if the law has at least one of the given flags. */
 static inline bool hf_law_has(hf_law law, unsigned flags)
 {
 #define HF_LAW_FLAGS(name, word, target, unit, flags) flags,
@@ -111,9 +111,9 @@ static inline double hf_law_default_target(hf_law law, double length_at_target_m
  * value is valid. If the value is invalid, the function writes the fault into `text` and returns `text`. */
 const char *hf_law_target_fault(hf_law law, double target, double length_at_target_m, char text[HF_LAW_FAULT_SIZE]);
 
-/* Returns the length in m that a law with a multiplier requires at this tension. Returns NaN for other laws. Expressed
- * as a function of the tension, the length needs no special case for stiff cables. In the limit of infinite EA, the law
- * elastic becomes the law length (METHOD M3). */
+/* Returns the length in m that a law with a multiplier requires at the tension tension_N. Returns NaN for other laws.
+ * Expressed as a function of the tension, the length needs no special case for stiff cables. In the limit of infinite
+ * EA, the law elastic becomes the law length (METHOD M3). */
 static inline double hf_law_required_length_m(hf_law_cable c, double tension_N)
 {
     switch (c.law) {
@@ -145,16 +145,17 @@ static inline double hf_law_tension_N(hf_law_cable c, double length_m)
     return (double)NAN;
 }
 
-/* Returns the unstressed length in m of a cable that has this tension at this length (METHOD M32). For a slack cable
- * whose law has a multiplier, the function returns the length that the law requires at zero tension. The member c.EA_N
- * is required for every law. */
+/* Returns the unstressed length in m of a cable with the length length_m and the tension tension_N (METHOD M32). For a
+ * slack cable whose law has a multiplier, the function returns the length that the law requires at zero tension. The
+ * member c.EA_N is required for every law. */
 static inline double hf_law_cut_m(hf_law_cable c, double length_m, double tension_N, bool is_slack)
 {
     if (is_slack && hf_law_has(c.law, HF_LAW_HAS_MULTIPLIER)) return hf_law_required_length_m(c, 0);
     return length_m / (1 + tension_N / c.EA_N);
 }
 
-/* Returns the axial stiffness phi'' = dT/dl of the law at this length, in N/m. Returns INFINITY for a rigid law. */
+/* Returns the axial stiffness phi'' = dT/dl of the law at the length length_m, in N/m. Returns INFINITY for a rigid
+ * law. */
 static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
 {
     switch (c.law) {
@@ -172,16 +173,17 @@ static inline double hf_law_stiffness_N_per_m(hf_law_cable c, double length_m)
 
 /* ---- functions that follow from the flags ---- */
 
-/* Returns the force density in N/m at this length. If the law determines the tension, the force density is the tension
- * divided by the length. Otherwise it is q_N_per_m. */
+/* Returns the force density in N/m at the length length_m. If the law determines the tension, the force density is the
+ * tension divided by the length. Otherwise it is q_N_per_m. */
 static inline double hf_law_held_q_N_per_m(hf_law_cable c, double length_m, double q_N_per_m)
 {
     return hf_law_has(c.law, HF_LAW_GIVES_TENSION) ? c.target / length_m : q_N_per_m;
 }
 
-/* Eq. 8 assigns at least this force density, in N/m, to a slack cable. This minimum is far below all forces, even in
- * nets with pretensions of 1e-300 N. A minimum of 1e-100 would be too large for such nets. The minimum force density is
- * large enough to determine the position of a node that only slack cables hold. */
+/* Eq. 8 assigns at least the force density HF_LAW_MIN_Q_N_PER_M, in N/m, to a slack cable. The force of a cable with
+ * this force density is far below all other forces in a net. A minimum of 1e-100 N/m would be too large for nets with
+ * pretensions of 1e-300 N. The minimum force density is large enough to determine the position of a node that only
+ * slack cables hold. */
 #define HF_LAW_MIN_Q_N_PER_M 1e-305
 
 /* Returns the next force density of the fixed-point iteration in N/m. Eq. 7 multiplies the force density q by the ratio
@@ -198,10 +200,10 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
 
 /* Returns the tension in N with which an iteration begins. If the cable can go slack and is taut between the target
  * positions of its ends, the iteration begins with the tension at these positions. For all other cables, the iteration
- * begins with the tension otherwise_N. The function limits this tension to the range from otherwise_N /
- * HF_LAW_FIRST_RANGE to otherwise_N * HF_LAW_FIRST_RANGE. Without this limit, a stiff cable that is only just taut
- * would carry almost no force at the beginning. Without this limit, a stiff cable that was cut too short would carry
- * almost the entire force at the beginning. */
+ * begins with the tension otherwise_N. The function limits the ratio of this tension to otherwise_N to the range from
+ * 1/HF_LAW_FIRST_RANGE to HF_LAW_FIRST_RANGE. Without this limit, a stiff cable that is only just taut would carry
+ * almost no force at the beginning. Without this limit, a stiff cable that was cut too short would carry almost the
+ * entire force at the beginning. */
 #define HF_LAW_FIRST_RANGE 10.0
 static inline double hf_law_first_tension_N(hf_law_cable c, double otherwise_N)
 {

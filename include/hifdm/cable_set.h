@@ -31,10 +31,9 @@ const char *hf_cable_set_name_fault(const char *name);
  * HF_CABLE_SET_NAME_SIZE bytes. The function hf_scene_free frees the memory. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cable_set_allocate(hf_scene *scene, int n_set, int n_member);
 
-/* Defines the sets of a scene that has no sets. The strings in the array name [n_set] must be in the order of strcmp,
- * without duplicates. The array member [n_member] must not contain duplicates. The cables of each set must be in
- * ascending order. The function omits sets without a cable. The function copies the names. Returns HF_OK or
- * HF_NO_MEMORY. */
+/* Defines the sets of a scene that has no sets. The array name [n_set] must be sorted by strcmp and must not contain
+ * duplicates. The array member [n_member] must not contain duplicates. The cables of each set must be in ascending
+ * order. The function omits sets without a cable. The function copies the names. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_cable_set_make(hf_scene *scene, int n_set, const char *const *name, int n_member,
                             const hf_cable_set_member *member);
 

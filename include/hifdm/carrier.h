@@ -23,12 +23,12 @@ typedef struct {
 } hf_carrier;
 
 /* Builds the carrier from a truss and the scene of the net on this truss. The truss and the scene must already be
- * checked. Each support of the scene is attached to the nearest node of the truss (hf_truss_attach). The distance of
- * the support from this node must be at most match_tolerance_m. The carrier takes ownership of the truss, even after a
- * failure. The function sets all members of *truss to zero. The frame of the carrier contains a pointer to the truss of
- * the carrier. Therefore, the carrier must not be moved in memory. Returns HF_OK. If the function fails, it adds
- * messages and returns HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free even if
- * hf_carrier_build fails. */
+ * checked. Each support of the scene is attached to the nearest node of the truss (hf_truss_attach). The maximum
+ * distance of a support from its node is match_tolerance_m. The carrier takes ownership of the truss, even if
+ * hf_carrier_build fails. The function sets all members of *truss to zero. The frame of the carrier contains a pointer
+ * to the truss of the carrier. Therefore, the carrier must not be moved in memory. Returns HF_OK. If the function
+ * fails, it adds messages and returns HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. Call hf_carrier_free
+ * even if hf_carrier_build fails. */
 hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_scene *scene, hf_carrier *carrier,
                            hf_messages *messages);
 /* Frees the truss, the frame and the arrays. */

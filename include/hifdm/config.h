@@ -91,13 +91,13 @@ hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages 
  * the kind whose surface is closer to the inner nodes of the scene. Returns HF_OK, or HF_BAD_CASE if the target
  * positions of the inner nodes are not on the surface. The error message contains the RMS distances of the inner nodes
  * from both kinds of surface. If the focal length is out of proportion to the aperture, the function adds a warning.
- * This check does not require a `surface` section. */
+ * The check of the focal length does not require a `surface` section. */
 hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_surface_settings *surface,
                             hf_messages *messages);
 
 /* Sets the material of cables and nodes of the scene from the lists `cables` and `nodes` of the case. A later row
- * replaces the values of an earlier row. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if a row matches nothing in
- * this net. Call hf_material_free even if hf_config_material fails. */
+ * replaces the values of an earlier row. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if a row matches no cable
+ * or node of this net. Call hf_material_free even if hf_config_material fails. */
 hf_status hf_config_material(const hf_case *settings, const hf_scene *scene, hf_material *material,
                              hf_messages *messages);
 
@@ -152,9 +152,9 @@ typedef struct {
     size_t offset;      /* offset of the member in hf_case; for a key of a row, the offset in the row */
     /* inclusive bounds; min HF_ABOVE_ZERO: the value is above 0; for a text, max is the size of the buffer */
     double min, max;
-    /* This string is the default value as written in a case file. A NULL pointer means that every existing section or
-     * row must contain the key. An empty string means that the key has no value by default. In a row, a missing number
-     * is NaN, and missing bounds are infinite. */
+    /* The string default_value is the default value as written in a case file. A NULL pointer means that every existing
+     * section or row must contain the key. An empty string means that the key has no value by default. In a row, a
+     * missing number is NaN, and missing bounds are infinite. */
     const char *default_value;
     const char *unit;         /* unit; "": dimensionless */
     const char *const *words; /* words of HF_FIELD_WORD by enumeration, terminated by NULL; NULL for other types */

@@ -24,8 +24,8 @@ hf_method hf_evaluate_method(const hf_model *model, const hf_form_settings *form
 
 /* Finds the shape of the case and certifies it (hf_certify). After the call, the workspace contains the shape. Unless
  * `history` is NULL, the function records the values of each iteration in `history`. Returns result->status. If
- * *workspace->stop was set, the status is HF_INTERRUPTED. Other possible values are HF_OK, HF_NOT_CONVERGED and the
- * statuses of ill-posed nets. */
+ * *workspace->stop was set, the status is HF_INTERRUPTED. The status can also be HF_OK, HF_NOT_CONVERGED or the status
+ * of an ill-posed net. */
 hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                            hf_history *history, hf_form_result *result);
 
@@ -35,7 +35,7 @@ hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, 
 hf_status hf_evaluate_prepared(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                                hf_history *history, hf_form_result *result);
 
-/* Describes one row of optimize.limits. The row bounds a quantity of the shape. */
+/* Describes one row of optimize.limits. A row of optimize.limits bounds a quantity of the shape. */
 typedef struct {
     hf_limit_kind kind;  /* the quantity */
     double lower, upper; /* bounds in the unit of the quantity; an open side is infinite */
@@ -50,8 +50,8 @@ typedef struct {
     void *block;   /* owned memory behind the rows */
 } hf_limits;
 
-/* Contains the data that all designs of a run have in common. The threads of a run share these data. The struct does
- * not own the data behind its pointers. */
+/* Contains the data that all designs of a run have in common. The threads of a run share the data in this struct. The
+ * struct does not own the data behind its pointers. */
 typedef struct {
     const hf_model *model;        /* the net */
     const hf_form_settings *form; /* tolerances and bounds of the form-finding */
@@ -91,11 +91,11 @@ double hf_evaluate_divisor(const hf_evaluator *evaluator, int i_variable);
 
 /* Finds the shape of one design and writes the shape to the workspace. The array design [model->n_variable] contains
  * the values of the design variables. Design variables of cables must have values above 0. Returns result->status. If
- * the status is not HF_OK, the design is infeasible, and psi_m and merit are NaN. If the design has no shape
- * (hf_status_has_shape), the tension ratios and the violation are NaN. If no taut cable holds a node of the design, the
- * status is HF_SINGULAR. If an objective of a design has no value, the status is HF_NOT_FINITE. `point` is the memory
- * of this thread for the objectives (hf_objectives_point_create). If there are no objectives, hf_evaluate ignores
- * `point`. */
+ * the status is not HF_OK, the design is infeasible. The members psi_m and merit of an infeasible design are NaN. If
+ * the design has no shape (hf_status_has_shape), the tension ratios and the violation are NaN. If no taut cable holds a
+ * node of the design, the status is HF_SINGULAR. If an objective of a design has no value, the status is HF_NOT_FINITE.
+ * `point` is the memory of this thread for the objectives (hf_objectives_point_create). If there are no objectives,
+ * hf_evaluate ignores `point`. */
 hf_status hf_evaluate(const hf_evaluator *evaluator, const double *design, hf_workspace *workspace,
                       hf_objectives_point *point, hf_form_result *result);
 

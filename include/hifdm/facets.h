@@ -29,7 +29,7 @@ typedef struct {
  * length. Therefore, the nodes at the rim of a net are on the surface even if the truss of the net deflects.
  *
  * If the scene contains facets, the function uses the facets that have a node on the surface. If the scene contains no
- * facets, the function projects the cables between nodes on the surface along z. These projected cables form a plane
+ * facets, the function projects the cables between nodes on the surface along z. The projected cables form a plane
  * graph. Each minimal face of the plane graph is a facet. If no cable runs along the rim, the straight line between two
  * supports closes the face of the inner nodes between these supports. If boundary cables form an edge from one support
  * to the other, the straight line between the supports does not close a face.

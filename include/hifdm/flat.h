@@ -21,8 +21,8 @@
  * hf_flat_sets until hf_flat_free is called. The handle copies all other arguments. A returned string is valid until
  * the next call with the same handle.
  *
- * Threads: only one thread at a time may use a handle. The function hf_flat_stop is the exception. A program may use
- * any number of handles at the same time.
+ * Threads: except for hf_flat_stop, only one thread at a time may use a handle. A program may use any number of handles
+ * at the same time.
  *
  * Waiting: set OMP_WAIT_POLICY=passive and GOMP_SPINCOUNT=2000 in the environment before the library is loaded, as the
  * Python package does. The comment of hf_batch_wait_quietly in batch.h explains why these variables are necessary.
@@ -61,9 +61,9 @@ const char *hf_flat_messages(const hf_flat *flat);
 /* ---- A case ---- */
 
 /* Opens a case file with the n_set overrides in the array `set`. An override has the form "key=value". The argument
- * n_thread is the number of threads that evaluate designs. If n_thread is 0, the threads use all cores. This function
- * does not compute a shape. For each handle, call either hf_flat_open or hf_flat_open_net once. Returns HF_OK,
- * HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. A second call returns HF_BAD_USAGE. */
+ * n_thread is the number of threads that evaluate designs. If n_thread is 0, the threads use all cores. The function
+ * hf_flat_open does not compute a shape. For each handle, call either hf_flat_open or hf_flat_open_net once. Returns
+ * HF_OK, HF_BAD_CASE, HF_MECHANISM, HF_NO_MEMORY or HF_NO_LAPACK. A second call returns HF_BAD_USAGE. */
 int hf_flat_open(hf_flat *flat, const char *path, int n_set, const char *const *set, int n_thread);
 
 /* Sets the nodes of a net in memory. The arguments have the same meaning as the members of hf_scene_arrays
@@ -99,7 +99,7 @@ int hf_flat_open_net(hf_flat *flat, const char *name, const char *text, int n_se
 const char *hf_flat_text(hf_flat *flat, const char *list, int i);
 
 /* Copies integers to the array `to` and returns the number of integers. If `to` is NULL, the function only returns the
- * number. Returns -1 for an unknown name and 0 before a case is open:
+ * number of integers. Returns -1 for an unknown name and 0 before a case is open:
  *
  *   end [n_cable][2], role [n_node], group, law [n_cable]
  *   variable_cable [n_variable]     cable of each design variable; -1: the variable displaces a support
@@ -127,8 +127,8 @@ int hf_flat_form(hf_flat *flat);
 /* Evaluates the n designs in the array design [n][n_variable] in parallel, in the same way as `hifdm evaluate`. The
  * array figure [n_figure][n] receives one row for each string of the list "figure". The first row of the array contains
  * the status code of each design. Returns HF_OK, even if designs are infeasible. Returns HF_BAD_CASE if a value is not
- * finite, or if a value of a cable is not above zero. Returns HF_BAD_USAGE if hf_flat_form has not been called, and
- * HF_NO_MEMORY if memory runs out. */
+ * finite, or if a design variable of a cable has a value that is not above zero. Returns HF_BAD_USAGE if hf_flat_form
+ * has not been called, and HF_NO_MEMORY if memory runs out. */
 int hf_flat_evaluate(hf_flat *flat, int n, const double *design, double *figure);
 
 /* Finds the shape of one design, the array design [n_variable]. Read the shape with hf_flat_reals. The status of the
@@ -162,10 +162,10 @@ int hf_flat_run(hf_flat *flat, const char *output, int restart, hf_flat_observer
  * the process must therefore set a command before its first run. The Python package sets one. */
 void hf_flat_set_reader(const char *const *command);
 
-/* Reads a result file in the same way as hf_flat_run. This function may crash or end the process. */
+/* Reads a result file in the same way as hf_flat_run. The function hf_flat_read may crash or end the process. */
 void hf_flat_read(const char *path);
 
-/* Stops the current run. Any thread or signal handler may call hf_flat_stop. The stopped function hf_flat_run returns
+/* Stops the current run. Any thread or signal handler may call hf_flat_stop. The stopped call of hf_flat_run returns
  * HF_INTERRUPTED. */
 void hf_flat_stop(hf_flat *flat);
 

@@ -36,8 +36,8 @@ void hf_form_set_supports(const hf_model *model, hf_workspace *workspace);
  * records the values of each iteration in `history`. The function does not allocate memory.
  *
  * Returns result->status. The status is HF_OK, HF_NOT_CONVERGED, or HF_INTERRUPTED if *workspace->stop was set. If the
- * net is ill-posed, the status is HF_SINGULAR, HF_COLLAPSED, HF_NOT_FINITE or HF_STRAIGHT_CHAIN. The member
- * result->culprit is then the index of the row, cable or chain at fault. */
+ * net is ill-posed, the status is HF_SINGULAR, HF_COLLAPSED, HF_NOT_FINITE or HF_STRAIGHT_CHAIN. If the net is
+ * ill-posed, result->culprit is the index of the row, cable or chain at fault. */
 hf_status hf_form_find(const hf_model *model, const hf_form_settings *settings, hf_stop_rule stop,
                        hf_workspace *workspace, hf_history *history, hf_form_result *result);
 
@@ -54,8 +54,9 @@ hf_status hf_form_measure(const hf_model *model, const hf_form_settings *setting
 void hf_form_assemble(const hf_model *model, hf_workspace *workspace);
 
 /* Returns the maximum residual force of a node in N, for the shape in the workspace. Writes the nodal forces to
- * force_N. For a cable of law tension, the function uses the target tension. For a cable of any other law, the function
- * uses the tension q l. For elastic cables, the member residual_N of a final result uses the tension of the law. */
+ * force_N. For a cable of law tension, the function uses the target tension. For a cable of any other law, the tension
+ * is the product of the force density q and the length l. For elastic cables, the member residual_N of a final result
+ * uses the tension of the law. */
 double hf_form_residual_N(const hf_model *model, hf_workspace *workspace);
 
 /* The relative length of a cable is its length divided by its length at the target positions. A cable of law

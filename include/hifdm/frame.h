@@ -12,8 +12,8 @@
  * follow the Euler-Bernoulli theory or the Timoshenko theory. The stiffness matrix is stored as a lower band in the
  * layout of LAPACK. The numbering of the unknowns reduces the bandwidth of the stiffness matrix.
  *
- * Vectors over the nodes have the shape [n_node][6]. A vector contains, for each node, the components along x, y and z
- * in m or N. The components about x, y and z in rad or N m follow. */
+ * Vectors over the nodes have the shape [n_node][6]. A vector contains six components for each node: along x, y, z in m
+ * or N, and about x, y, z in rad or N m. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -86,10 +86,10 @@ void hf_frame_member_forces(const hf_frame *frame, const hf_frame_load *load, co
  * includes only elastic strain, not thermal expansion. */
 double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, const double *displacement);
 
-/* Computes the flexibility matrix F of the n_point nodes in the array `node` (Eq. 15, condensed). Row 3*i+c and column
- * 3*k+d of the array flexibility_m_per_N [3 n_point][3 n_point] belong to direction c at node[i] and direction d at
- * node[k]. The entry in this row and column is the displacement of node[i] along c under a unit force on node[k] along
- * d. The flexibility matrix is exactly symmetric. Returns HF_OK or HF_NO_MEMORY. */
+/* Computes the flexibility matrix F of the n_point nodes in the array `node` (Eq. 15, condensed). Row 3*i+c of the
+ * array flexibility_m_per_N [3 n_point][3 n_point] belongs to the displacement of node[i] along axis c. Column 3*k+d of
+ * this array belongs to a unit force on node[k] along axis d. The flexibility matrix is exactly symmetric. Returns
+ * HF_OK or HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 HF_API_END

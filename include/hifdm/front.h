@@ -3,8 +3,8 @@
  * Stability: internal. This header may change in any version.
  *
  * Levenberg-Marquardt and the genetic algorithm both produce a struct hf_front. The program stores, prints, compares
- * and draws this struct. Pipeline: hf_front_create -> objectives, designs and statuses of the points -> hf_front_settle
- * -> hf_front_tabulate.
+ * and draws the struct hf_front. Pipeline: hf_front_create -> objectives, designs and statuses of the points ->
+ * hf_front_settle -> hf_front_tabulate.
  *
  * The objectives have the order and the units of the rows of optimize.front. All objectives of a Pareto front are
  * minimised. Points that are not on the Pareto front are marked but never omitted. */
@@ -32,8 +32,9 @@ extern const char *const hf_front_mark_word[HF_FRONT_N_MARK + 1]; /* the last en
 typedef struct {
     double objective[HF_FRONT_OBJECTIVES_MAX]; /* values of the objectives; NaN for a failed point */
     /* Slope of the front, >= 0. The slope for another objective is the decrease of the objective `minimised` per unit
-     * increase of this other objective. Each objective has its own unit. The slope is NaN for the objective `minimised`
-     * itself. If the method computes no slope, all slopes are NaN. */
+     * increase of this other objective. The unit of the slope is the unit of the objective `minimised` divided by the
+     * unit of the other objective. The slope is NaN for the objective `minimised` itself. If the method computes no
+     * slope, all slopes are NaN. */
     double multiplier[HF_FRONT_OBJECTIVES_MAX];
     hf_status status;   /* status of the design of this point */
     hf_front_mark mark; /* whether the point is on the front, dominated or failed */

@@ -53,8 +53,8 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
     hf_law tie_law;                 /* law of the ties */                                                              \
     double tie_tension_N; /* tension of the ties at the target positions (laws tension, force_density, elastic) */
 
-/* Each row X(section, member, type, minimum, maximum, default, unit, words, help) defines the key of such a member in
- * hf_field_table (config.h). */
+/* Each row X(section, member, type, minimum, maximum, default, unit, words, help) defines the key of one of these
+ * members in hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
       "The key `rear_distance_m` sets the distance of the rim of the rear net below the rim of the front net. Ties "   \

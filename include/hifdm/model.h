@@ -10,10 +10,10 @@
  *
  * A model does not change after it is built, so all threads can share it.
  *
- * The model renumbers the nodes. The row of a node is its index in the model. Free nodes come first, in the order of
- * the matrix band. Rows 0 to n_free-1 are the rows of the force density matrix D. Supports on a truss follow the free
- * nodes, and all other supports come last. The cables have the same order as in the scene. The matrix D is stored as a
- * lower band in the column-major layout of LAPACK. D(i,j) is band[i-j + j*(half_bandwidth+1)]. */
+ * The model renumbers the nodes. The row of a node is its index in the model. Free nodes have the first rows, in the
+ * order of the matrix band. Rows 0 to n_free-1 are the rows of the force density matrix D. Supports on a truss have the
+ * next rows, and all other supports have the last rows. The cables have the same order as in the scene. The matrix D is
+ * stored as a lower band in the column-major layout of LAPACK. D(i,j) is band[i-j + j*(half_bandwidth+1)]. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -23,10 +23,10 @@
 
 HF_API_BEGIN
 
-/* A chain is straight if its length exceeds the distance between its supports by less than this relative limit. A chain
- * below this limit would have a sag below 2e-5 of its span and a tension above 1e4 times its load. The tests `model`,
- * `solve` and `stress` also pass with limits of 1e-10 and 1e-8. With a limit of 1e-11 or 1e-7, the test
- * straight_chains_are_found of `model` fails. */
+/* A chain is straight if its length exceeds the distance between its supports by less than the relative limit
+ * HF_STRAIGHT_EXCESS. A chain below the limit HF_STRAIGHT_EXCESS would have a sag below 2e-5 of its span and a tension
+ * above 1e4 times its load. The tests `model`, `solve` and `stress` also pass with limits of 1e-10 and 1e-8. With a
+ * limit of 1e-11 or 1e-7, the test straight_chains_are_found of `model` fails. */
 #define HF_STRAIGHT_EXCESS 1e-9
 
 /* Describes the quantity that a design variable of optimize.variables sets. */
@@ -68,8 +68,8 @@ typedef struct {
 
     /* The rows of optimize.variables define the design variables. By default, the design variables are the pretensions
      * of the boundary cables that end at a free node. If exactly two varied cables meet at a free node, their design
-     * variables belong to the same group. Such a group is called a chain. Unequal changes within a chain push its nodes
-     * along the chain, and equal changes change its sag. */
+     * variables belong to the same chain. A chain of design variables is a group of design variables. Unequal changes
+     * within a chain push its nodes along the chain, and equal changes change its sag. */
     int n_variable, n_variable_group; /* numbers of design variables and of chains */
     int *variable_cable;              /* [n_variable] varied cable; -1: the variable displaces a support */
     int *variable_group;              /* [n_variable] index of the chain, 0 to n_variable_group-1 */

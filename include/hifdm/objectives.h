@@ -10,9 +10,9 @@
  *   hf_objectives_nets_linearise, _push, _close   the same steps for objectives over as-built nets
  *
  * Each objective has a value in its own unit (settings.h). The value of an objective is the norm of its residuals. The
- * merit of a design is sqrt(sum (weight * value)^2).
+ * merit of a design is sqrt(sum (weight * value)^2) over all objectives.
  *
- * The value of the objectives pull and deflection is the maximum of several quantities s. The residuals of pull and
+ * The value of the objective pull or deflection is the maximum of several quantities s. The residuals of pull and
  * deflection have the smooth norm (sum s^16)^(1/16) instead of the maximum. For n quantities, the smooth norm is
  * between their maximum and n^(1/16) times their maximum. The merit contains the smooth norm instead of the maximum. A
  * tension ratio is the product of the maximum tension and the maximum of 1/tension. The smooth norm also replaces both
@@ -50,9 +50,9 @@ typedef struct {
 typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *shape);
 
 /* Describes the as-built nets of a design on which objectives may be measured. The nets are the load cases of the
- * design, followed by samples of its errors. The module built/built_nets.h makes the as-built nets and depends on this
- * module. Therefore, that module supplies the functions of this struct. The shape of an as-built net depends only on
- * the design and on the index of the net. */
+ * design, followed by samples of its errors. The module built/built_nets.h makes the as-built nets and supplies the
+ * functions of this struct. The pointers are necessary because built/built_nets.h depends on this module. The shape of
+ * an as-built net depends only on the design and on the index of the net. */
 typedef struct hf_objectives_nets {
     int n_load_case, n_sample;         /* number of load cases and number of samples */
     const char *const *load_case_name; /* [n_load_case] names of the load cases */
@@ -65,8 +65,8 @@ typedef struct hf_objectives_nets {
      * to the design of the last call of `cut`. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE if the cables cannot be
      * cut. */
     hf_status (*cut)(void *room, const hf_workspace *design);
-    /* Finds the shapes of n nets from index `first` on, and calls `take` for each of these nets. The function makes
-     * these calls in the calling thread and in any order. */
+    /* Finds the shapes of n nets from index `first` on, and calls `take` for each of these nets. The function calls
+     * `take` in the calling thread and in any order. */
     void (*solve)(void *room, int first, int n, hf_objectives_take *take, void *context);
     /* Finds the shape of one net and factors the matrix of the net in this shape. Sets *shape to a workspace that
      * `room` owns. Returns HF_OK, HF_NO_MEMORY, or HF_NOT_FINITE if the net has no shape. If the status is HF_OK, later
@@ -112,11 +112,11 @@ typedef struct hf_objectives_point {
 } hf_objectives_point;
 
 /* Creates the objectives of a case from the rows of optimize.front or optimize.objective. If the case has no rows for
- * objectives, the objective is psi. The truss must already be attached to the model. If no objective needs them, the
- * arguments `surface` and `facets` may be NULL. If all objectives are measured on the design, the borrowed argument
- * `nets` may be NULL. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would be too many residuals, or if a
- * row needs data that this scene does not have. The function adds a message for each row that needs missing data. Call
- * hf_objectives_free even if hf_objectives_create fails. */
+ * objectives, the objective is psi. The caller must already have attached the truss to the model. If no objective needs
+ * the surface or the facets, the arguments `surface` and `facets` may be NULL. If all objectives are measured on the
+ * design, the borrowed argument `nets` may be NULL. Returns HF_OK or HF_NO_MEMORY. Returns HF_BAD_CASE if there would
+ * be too many residuals, or if a row needs data that this scene does not have. The function adds a message for each row
+ * that needs missing data. Call hf_objectives_free even if hf_objectives_create fails. */
 hf_status hf_objectives_create(const hf_scene *scene, const hf_model *model, const hf_optimize_settings *settings,
                                const hf_surface_settings *surface, const hf_facets *facets,
                                const hf_objectives_nets *nets, hf_objectives *objectives, hf_messages *messages);
@@ -136,8 +136,8 @@ void hf_objectives_point_free(hf_objectives_point *point);
 
 /* Measures the shape in the workspace. The array value [n_objective] receives the values of the objectives in their own
  * units. The argument *merit receives the merit. The function overwrites the point. The function allocates memory only
- * for a best fit. Returns HF_OK or HF_NO_MEMORY. If an objective has no value, the merit has no value, but the status
- * is still HF_OK. */
+ * for a best fit. Returns HF_OK or HF_NO_MEMORY. If an objective has no value, the merit has no value and the status is
+ * HF_OK. */
 hf_status hf_objectives_measure(const hf_objectives *objectives, const hf_workspace *workspace,
                                 hf_objectives_point *point, double *value, double *merit);
 
@@ -184,8 +184,8 @@ void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectiv
 /* Returns true for the objectives surface and facets. */
 bool hf_objectives_is_on_surface(hf_figure_kind kind);
 
-/* Returns true if the value of the objective is a maximum of several quantities, or a ratio to a minimum. The value of
- * such an objective is not smooth. Its residuals are therefore the residuals of a smooth approximation. */
+/* Returns true if the value of the objective is a maximum of several quantities, or a ratio to a minimum. A maximum of
+ * several quantities is not smooth. Therefore, a smooth approximation replaces the maximum in the residuals. */
 bool hf_objectives_is_maximum(hf_figure_kind kind);
 
 /* Sets point->size [n_support] to the forces of the net on its supports in N. */

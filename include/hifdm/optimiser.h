@@ -12,7 +12,7 @@
  *
  * hf_batch_next executes the first and the last step of this loop with all threads. Each thread proposes individuals
  * and evaluates them. A generation does not change while the optimiser proposes the next generation. A program may
- * therefore copy the struct hf_population after hf_optimiser_tell and read the copy during this time. The copy is valid
+ * therefore read a copy of the struct hf_population that the program makes after hf_optimiser_tell. The copy is valid
  * until the next call of hf_optimiser_next returns.
  *
  * To add an optimiser, write a file src/search/optimiser_NAME.c and add one row to HF_OPTIMISER_LIST. Also add one row
@@ -24,12 +24,13 @@
 
 HF_API_BEGIN
 
-/* Contains the functions of one optimiser. The functions at the end of this header call these functions. A store keeps
- * only the population, not the state of the optimiser. If the journal contains the results of a generation, a resumed
- * run proposes this generation again. A proposal must therefore depend only on the settings, the model, the population
- * after hf_optimiser_tell and random numbers. Each random number must depend only on (seed, generation, individual).
- * The members best_psi_m and best_merit of the population contain the values of earlier generations. The argument
- * `state` contains constants and scratch data. The scratch data have no meaning between generations. */
+/* Contains the functions of one optimiser. The functions of this header call the functions in this struct. A store
+ * contains only the population, not the state of the optimiser. If the journal contains the results of a generation, a
+ * resumed run proposes this generation again. A proposal must therefore depend only on the settings, the model, the
+ * population after hf_optimiser_tell and random numbers. Each random number must depend only on the seed, the
+ * generation and the individual. The members best_psi_m and best_merit of the population contain the values of earlier
+ * generations. The argument `state` contains constants and scratch data. The scratch data have no meaning between
+ * generations. */
 typedef struct {
     /* Creates the state of the optimiser. Returns HF_OK or HF_NO_MEMORY. */
     hf_status (*create)(const hf_optimize_settings *settings, const hf_model *model, void **state);

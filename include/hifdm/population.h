@@ -94,12 +94,13 @@ void hf_population_advance(hf_population *population, hf_population *next);
  * of the generation must be available. */
 void hf_population_rank(const hf_optimize_settings *settings, hf_population *population);
 
-/* Returns the amount by which a result violates its constraints. For a feasible result, the amount is 0. For a result
- * without a shape, the amount is INFINITY. For all other results, the amount is result->violation. */
+/* Returns the amount by which a result violates its constraints. For a feasible result, the function returns 0. For a
+ * result without a shape, the function returns INFINITY. For all other results, the function returns
+ * result->violation. */
 double hf_population_violation(const hf_form_result *result);
 
-/* Returns the minimised quantity of a feasible result. The quantity is the merit or, for a Pareto front, the first
- * objective. */
+/* Returns the minimised quantity of a feasible result. The minimised quantity is the merit or, for a Pareto front, the
+ * first objective. */
 double hf_population_merit(const hf_population *population, const hf_form_result *result);
 
 /* Returns true if individual a is better than individual b. Feasible individuals are ordered by merit or, for a Pareto

@@ -41,7 +41,7 @@ typedef struct {
     hf_solver solver;       /* solver that the batch uses */
 } hf_problem;
 
-/* Describes a case whose net is in the memory of a program. Both members of this struct are borrowed. */
+/* Describes a case whose net is in the memory of a program. The struct does not own the data behind its members. */
 typedef struct {
     /* text of a case file with a section scene.import; the files that this section lists are not read */
     const char *text;
@@ -55,10 +55,11 @@ typedef struct {
  * model.n_variable is 0.
  *
  * Returns HF_OK. If the case has faults, the function returns HF_BAD_CASE with messages about all faults. If the
- * form-finding fails, the function returns HF_NOT_CONVERGED or the status of an ill-posed net. The messages then
+ * form-finding fails, the function returns HF_NOT_CONVERGED or the status of an ill-posed net. The error messages
  * contain the cables or nodes at fault. The function can also return HF_MECHANISM, HF_NO_MEMORY and HF_NO_LAPACK. If
- * the function fails, it adds an error message. If the form-finding fails, there is no batch. The members `form` and
- * `workspace` then contain the last state of the form-finding. Call hf_problem_free even if hf_problem_open fails. */
+ * the function fails, it adds an error message. If the form-finding fails, there is no batch. After a failed
+ * form-finding, the members `form` and `workspace` contain the last state of the form-finding. Call hf_problem_free
+ * even if hf_problem_open fails. */
 hf_status hf_problem_open(const char *path, const char *const *set, int n_set, int n_thread, hf_problem *problem,
                           hf_messages *messages);
 
@@ -66,7 +67,7 @@ hf_status hf_problem_open(const char *path, const char *const *set, int n_set, i
 bool hf_problem_has_merit(const hf_problem *problem);
 
 /* Writes pointers to the descriptions of the quantities of a design to `field`. Returns the number of figures. If the
- * designs have a merit, the number is HF_RESULT_N_INDIVIDUAL. */
+ * designs have a merit, the function returns HF_RESULT_N_INDIVIDUAL. */
 int hf_problem_list_figures(const hf_problem *problem, const hf_result_field *field[HF_RESULT_N_INDIVIDUAL]);
 
 /* Returns the number of quantities that have derivatives with respect to the design variables. Each objective has

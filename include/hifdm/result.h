@@ -33,7 +33,7 @@ typedef enum {
 #undef HF_STOP_REASON_ENUM
 } hf_stop_reason;
 
-/* Returns the word of a stop reason as a constant string. Returns "unknown" for other values. */
+/* Returns the word for a stop reason as a constant string. Returns "unknown" for other values. */
 const char *hf_stop_reason_word(int reason);
 
 /* Each row X(name, value, word stored in files) defines a reason why the coupling of the net with an elastic truss
@@ -223,8 +223,8 @@ typedef struct {
      __VA_ARGS__},
 
 #define HF_RESULT_COUNT(...) +1
-/* These constants are the numbers of rows of the two lists. The constant HF_RESULT_N_INDIVIDUAL is the number of rows
- * with a place among the quantities of one individual. */
+/* These constants are the numbers of rows of HF_RESULT_LIST and HF_COUPLING_LIST. The constant HF_RESULT_N_INDIVIDUAL
+ * is the number of rows with a place among the quantities of one individual. */
 enum {
     HF_RESULT_N = 0 HF_RESULT_LIST(HF_RESULT_COUNT),
     HF_COUPLING_N = 0 HF_COUPLING_LIST(HF_RESULT_COUNT),

@@ -43,8 +43,9 @@ typedef struct {
      * is the merit, the member `merit` is NaN. The member best_psi_m also belongs to the best design. */
     int step, max_steps, first_step;
     double merit;
-    /* During the refinement of a Pareto front, these members are the number of finished points, the number of all
-     * points, and the number of steps for all points. In all other phases, these members are 0. */
+    /* During the refinement of a Pareto front, points and points_all are the numbers of finished points and of all
+     * points. The member `steps` is the number of steps of the searches for all points. In all other phases, points,
+     * points_all and steps are 0. */
     int points, points_all;
     long steps;
 } hf_run_progress;
@@ -73,9 +74,9 @@ typedef struct {
     bool restart;      /* start again even if the file exists; false: resume an unfinished result of this case */
     int argc;          /* number of command line arguments, for the provenance */
     char *const *argv; /* [argc] command line arguments */
-    /* If this member is NULL, the result file gets its final name before hf_run_case returns. If this member is not
-     * NULL, the function sets *unsettled to a store. The caller must then call hf_store_settle for this store, in any
-     * thread. If no store must be settled, the function sets *unsettled to NULL. */
+    /* If this member is NULL, the result file gets its final name before hf_run_case returns. If the member `unsettled`
+     * is not NULL, the function sets *unsettled to a store. The caller must call hf_store_settle for the store
+     * *unsettled, in any thread. If no store must be settled, the function sets *unsettled to NULL. */
     hf_store **unsettled;
 } hf_run_output;
 

@@ -1,8 +1,8 @@
 /* settings - all settings of the library as plain values.
  * Stability: stable.
  *
- * The function hf_config_load reads these settings from a case file. The command `hifdm schema` describes their keys. A
- * program may also set these values without a case file. */
+ * The function hf_config_load reads these settings from a case file. The command `hifdm schema` describes the keys of
+ * these settings. A program may also set these values without a case file. */
 #pragma once
 
 #include <hifdm/api.h>
@@ -47,7 +47,7 @@ typedef enum { HF_SURFACE_AUTO, HF_SURFACE_PARABOLIC_CYLINDER, HF_SURFACE_PARABO
 /* The key optimize.symmetry selects the mirror planes that link design variables. */
 typedef enum { HF_SYMMETRY_NONE, HF_SYMMETRY_X, HF_SYMMETRY_Y, HF_SYMMETRY_XY, HF_SYMMETRY_AUTO } hf_symmetry;
 
-/* A row of optimize.variables varies one of these quantities for each cable of its set, or for the supports at these
+/* Selects the quantity that a row of optimize.variables varies for each cable of its set, or for the supports at these
  * cables. */
 typedef enum {
     HF_VARY_TENSION,           /* tension of a cable, N; the cable gets law tension */
@@ -63,8 +63,8 @@ typedef enum {
  * mirrored positions. */
 typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
 
-/* A row of optimize.objective or optimize.front measures one of these quantities. Every quantity of an objective is at
- * least zero and is minimised. */
+/* Selects the quantity that a row of optimize.objective or optimize.front measures. Every quantity of an objective is
+ * at least zero and is minimised. */
 typedef enum {
     HF_FIGURE_PSI,        /* psi: RMS distance of the inner nodes from their target positions, m */
     HF_FIGURE_SURFACE,    /* RMS distance of the inner nodes from the target surface, m */
@@ -88,7 +88,7 @@ typedef enum { HF_OVER_DESIGN, HF_OVER_SAMPLES } hf_over;
 /* The root mean square or the maximum combines the values of several shapes. */
 typedef enum { HF_TAKE_MEAN, HF_TAKE_WORST } hf_take;
 
-/* A row of optimize.limits bounds one of these quantities. */
+/* Selects the quantity that a row of optimize.limits bounds. */
 typedef enum {
     HF_LIMIT_TENSION,   /* tension of each cable of the set, N */
     HF_LIMIT_RATIO,     /* ratio of maximum to minimum tension in the set */
@@ -243,8 +243,8 @@ bool hf_objective_takes_load_cases(const hf_objective_settings *settings);
 /* Returns true if an objective is measured on samples of as-built nets. */
 bool hf_optimize_takes_samples(const hf_optimize_settings *settings);
 
-/* Describes one row of the list `cables`. The row contains the material of the cables of a set. NaN means that a value
- * is not given. */
+/* Describes one row of the list `cables`. A row of `cables` contains the material of the cables of a set. NaN means
+ * that a value is not given. */
 typedef struct {
     char set[HF_SET_NAME_SIZE];            /* cables: name of a set, or inner, boundary, all */
     double expansion_per_K, mass_kg_per_m; /* thermal expansion, and mass per unstressed length */
@@ -253,7 +253,7 @@ typedef struct {
 /* Selects the nodes to which a row applies: all nodes, or the nodes of one role. */
 typedef enum { HF_NODES_ALL, HF_NODES_SUPPORT, HF_NODES_INNER, HF_NODES_EDGE } hf_nodes;
 
-/* Describes one row of the list `nodes`. The row adds a mass to nodes. */
+/* Describes one row of the list `nodes`. A row of `nodes` adds a mass to nodes. */
 typedef struct {
     hf_nodes role;  /* nodes that have the mass */
     double mass_kg; /* mass of each node */
@@ -295,8 +295,7 @@ typedef struct {
 typedef enum { HF_AIM_TARGET, HF_AIM_DESIGN } hf_aim;
 
 /* Contains the settings of the turnbuckles of an as-built net (section `adjust`). The adjustment lengthens or shortens
- * some cables of the set by whole steps within a range. The purpose of the adjustment is a smaller value of
- * `figure`. */
+ * some cables of the set by whole steps within a range. The adjustment reduces the value of `figure`. */
 typedef struct {
     char set[HF_SET_NAME_SIZE]; /* cables with turnbuckles: name of a set, or inner, boundary, all */
     double range_m, step_m;     /* maximum change of the cut length in either direction, and step */
@@ -307,8 +306,8 @@ typedef struct {
     double sigma_m; /* standard deviation of measured coordinates that have none of their own; 0: not given */
 } hf_adjust_settings;
 
-/* The first enumeration is the distribution of errors. The second enumeration is the method that chooses samples of the
- * errors. */
+/* The enumeration hf_distribution selects the distribution of errors. The enumeration hf_sampling selects the method
+ * that chooses samples of the errors. */
 typedef enum { HF_DISTRIBUTION_NORMAL, HF_DISTRIBUTION_UNIFORM } hf_distribution;
 typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 
@@ -353,8 +352,8 @@ typedef struct {
 
 #define HF_REQUIRE_ROWS_MAX 8 /* maximum number of rows of tolerance.require */
 
-/* Describes one row of tolerance.truss. The row contains the temperature error that all members of a part have in
- * common. */
+/* Describes one row of tolerance.truss. A row of tolerance.truss contains the temperature error that all members of a
+ * part have in common. */
 typedef struct {
     int part;                   /* 0: the whole truss; 1 + k: the members of hf_unit k */
     double sigma_temperature_K; /* standard deviation of the temperature */

@@ -3,7 +3,7 @@
  *
  * hifdm writes the file under a temporary name and renames the file after completion. The visible file is always
  * complete. The journal contains the results that are not yet in the file. The commands `show`, `report` and `export`
- * read the file. Pipeline of a run:
+ * read the file. Pipeline:
  *
  *   hf_store_create or hf_store_resume       provenance, case, scene
  *   hf_store_form                            shape of the form-finding
@@ -149,9 +149,10 @@ hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *m
 /* Returns the number of generations in the store, including those in the journal. */
 int hf_store_generations(const hf_store *store);
 
-/* All functions that write return HF_OK, HF_IO or HF_NO_MEMORY. If they fail, they add a message. After a failed write,
- * the store is unusable. Later calls with this store write nothing, add no message and return the same status. The only
- * exception is hf_store_complete. If `store` is NULL, the functions that write have no effect and return HF_OK. */
+/* All functions that write return HF_OK, HF_IO or HF_NO_MEMORY. A function that fails to write adds a message. After a
+ * failed write, the store is unusable. Later calls with this store write nothing, add no message and return the same
+ * status. The only exception is hf_store_complete. If `store` is NULL, the functions that write have no effect and
+ * return HF_OK. */
 
 /* Writes the shape in the workspace in the order of the scene. Unless `history` is NULL, the function also writes the
  * history of the iterations. Call hf_store_form once per store. If the store is resumed, the function does not write
@@ -172,9 +173,9 @@ hf_status hf_store_variables(hf_store *store, const hf_model *model, const hf_po
 hf_status hf_store_generation(hf_store *store, const hf_model *model, const hf_population *population,
                               hf_messages *messages);
 
-/* Reads the initial design initial [n_variable] of the genetic algorithm from a resumed store. The stored values are
- * necessary because this machine may compute values that differ in the last bits. If the store has no initial design,
- * `initial` is unchanged. */
+/* Reads the initial design of the genetic algorithm from a resumed store into the array initial [n_variable]. The
+ * stored values are necessary because this machine may compute values that differ in the last bits. If the store has no
+ * initial design, `initial` is unchanged. */
 hf_status hf_store_restore_initial(hf_store *store, int n_variable, double *initial, hf_messages *messages);
 
 /* Restores the state that the optimiser had before hf_optimiser_tell for the last generation in the store. The caller
@@ -184,8 +185,8 @@ hf_status hf_store_restore_initial(hf_store *store, int n_variable, double *init
  * has no generation, the function does nothing. */
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
-/* Copies the state state [n] of Levenberg-Marquardt and its elapsed time wall_s in s. Later publications include this
- * state. A finished file does not contain the state of Levenberg-Marquardt. */
+/* Copies the state of Levenberg-Marquardt in the array state [n] and the elapsed time wall_s in s. Later publications
+ * include this state. A finished file does not contain the state of Levenberg-Marquardt. */
 hf_status hf_store_refine(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
 /* Reads the state of Levenberg-Marquardt in a resumed store. The function sets *wall_s to the elapsed time in s, *state
  * to the state, and *n to the size of the state. If the store contains no state of Levenberg-Marquardt, *n is 0. The
@@ -196,11 +197,11 @@ hf_status hf_store_restore_refine(hf_store *store, double *wall_s, size_t *n, co
 /* Publishes all results so far. The published file has the visible name and is marked as unfinished. If at_once is
  * true, the function publishes immediately. If at_once is false, the function publishes only if enough time has passed
  * since the last publication. The time between two publications is at least 0.5 s and at least 50 times the duration of
- * the first publication. Publishing therefore takes less than 2 % of the run time. Call hf_store_publish after every
+ * the earlier publication. Publishing therefore takes less than 2 % of the run time. Call hf_store_publish after every
  * generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
-/* Writes the shape in the workspace and the design design [model->n_variable] for the stage HF_STAGE_SEARCH or
+/* Writes the shape in the workspace and its design [model->n_variable] for the stage HF_STAGE_SEARCH or
  * HF_STAGE_REFINE. Call hf_store_shape once per stage. */
 hf_status hf_store_shape(hf_store *store, hf_stage stage, const hf_model *model, const hf_workspace *workspace,
                          const double *design, hf_messages *messages);
@@ -225,14 +226,14 @@ hf_status hf_store_built(hf_store *store, const char *name, const hf_model *mode
 /* Writes the summary, closes the file and renames the file to its final name. Calls hf_store_complete and
  * hf_store_settle. The function frees the store even if the function fails. If the function fails, the published file
  * and the journal remain unchanged. If the file is complete but cannot have its final name (HF_EXISTS, HF_IO), the file
- * keeps another name. The error message contains this other name. */
+ * keeps another name. If the file keeps another name, the message contains this name. */
 hf_status hf_store_finish(hf_store *store, const hf_summary *summary, hf_messages *messages);
 
 /* Writes the summary and closes the file. The function requires processor time. Even if hf_store_complete fails, the
  * caller must call hf_store_settle afterwards. */
 hf_status hf_store_complete(hf_store *store, const hf_summary *summary, hf_messages *messages);
 /* Writes the file from the cache to the disk and renames the file. The function mostly waits for the disk. Another
- * thread may therefore call the function. The function frees the store even if the function fails. */
+ * thread may therefore call hf_store_settle. The function frees the store even if the function fails. */
 hf_status hf_store_settle(hf_store *store, hf_messages *messages);
 
 /* Frees the store, which may be NULL. The published file remains on the disk. The journal also remains, with the

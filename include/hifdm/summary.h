@@ -104,14 +104,14 @@ typedef struct {
     double min_N[HF_SUMMARY_SETS], max_N[HF_SUMMARY_SETS], ratio[HF_SUMMARY_SETS];
 } hf_set_tensions;
 
-/* The following constants are the maximum number of constraints in hf_held_limits and the size in bytes of the name of
- * a constraint. */
+/* HF_SUMMARY_HELD is the maximum number of constraints in hf_held_limits. HF_HELD_NAME_SIZE is the size in bytes of the
+ * name of a constraint. */
 #define HF_SUMMARY_HELD (2 * HF_DESIGN_ROWS_MAX + 1)
 #define HF_HELD_NAME_SIZE 160
 
 /* Contains the active constraints of the shape of a stage. A constraint is active if the shape reaches its bound within
- * 1e-8. The constraints are boundary_ratio_cap and the rows of optimize.limits. Each side of a row is a separate
- * constraint. The form-finding has no constraints. */
+ * 1e-8. The constraints are boundary_ratio_cap and the rows of optimize.limits. The lower and the upper bound of a row
+ * are separate constraints. The form-finding has no constraints. */
 typedef struct {
     int n;                      /* number of constraints */
     int row[HF_SUMMARY_HELD];   /* [n] row of optimize.limits; -1: boundary_ratio_cap */
@@ -165,8 +165,8 @@ typedef struct {
     hf_held_limits *held;        /* active constraints of its shape */
 } hf_stage_summary;
 
-/* The first struct contains the data that only the search has. The second struct contains the data that only the
- * refinement has. */
+/* The struct hf_search_summary contains the data that only the search has. The struct hf_refine_summary contains the
+ * data that only the refinement has. */
 typedef struct {
     HF_SUMMARY_SEARCH_LIST(HF_SUMMARY_MEMBER)
 } hf_search_summary;
@@ -214,8 +214,8 @@ void hf_summary_free(hf_summary *summary);
 void hf_summary_write_json(const hf_summary *summary, hf_status status, const char *messages, const char *path,
                            FILE *file);
 
-/* Returns the status that hf_summary_write_json writes for a file. If the run has ended, the status belongs to the
- * whole run. If the run has not ended, the status belongs to the form-finding. */
+/* Returns the status that hf_summary_write_json writes for a file. If the run has ended, the function returns the
+ * status of the whole run. If the run has not ended, the function returns the status of the form-finding. */
 hf_status hf_summary_status(const hf_summary *summary);
 
 /* Returns the word for the algorithm of a stage. The word is "ga" or "nsga2" for the search and "lm" for the

@@ -101,8 +101,8 @@ HF_API_BEGIN
  * shift shift_x_m is 0. The shift shift_x_m is also 0 if the minimum needs a shift of more than a tenth of the
  * half-width of the net. For a paraboloid, the rules for shift_x_m also apply to shift_y_m. If the minimum is not
  * found, the focal length focal_length_m is the focal length of the target surface. If the focal length of the minimum
- * is more than twice or less than half of the target focal length, the fit also uses the target focal length. Points on
- * two lines along y, for example, do not determine the focal length. */
+ * differs from the target focal length by more than a factor of 2, the fit uses the target focal length. Points on two
+ * lines along y, for example, do not determine the focal length. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
@@ -156,7 +156,8 @@ hf_surface_errors hf_surface_errors_of(const hf_surface_measures *measures, bool
 #define HF_SURFACE_GOOD_TO_DB 1.0
 
 /* Ruze's formula holds for gain losses up to HF_RUZE_MOST_DB. Ruze's formula requires errors that are small compared
- * with the wavelength. This maximum gain loss corresponds to an RMS error of lambda/15 for the wavelength lambda. */
+ * with the wavelength. The gain loss HF_RUZE_MOST_DB corresponds to an RMS error of lambda/15 for the wavelength
+ * lambda. */
 #define HF_RUZE_MOST_DB 3.0
 
 /* Returns the maximum of the frequencies frequencies_Hz in Hz, or 0 if no frequency is given. */
@@ -170,7 +171,7 @@ double hf_surface_gain_loss_dB(double half_path_rms_m, double frequency_Hz);
 double hf_surface_ruze_dB(double half_path_rms_m, double frequency_Hz);
 
 /* Returns the frequency in Hz at which a half-path RMS causes the gain loss loss_dB. The gain loss must be above 0 and
- * at most HF_RUZE_MOST_DB. Returns INFINITY for an RMS of 0. */
+ * at most HF_RUZE_MOST_DB. If the RMS error is 0, the function returns INFINITY. */
 double hf_surface_frequency_of_loss_Hz(double half_path_rms_m, double loss_dB);
 
 HF_API_END

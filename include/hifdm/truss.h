@@ -242,8 +242,8 @@ const char *hf_truss_ring_fault(const hf_truss_settings *settings, const hf_para
 
 /* Finds the node of the truss that carries each support of the net. The function selects the nearest node within the
  * distance tolerance_m. The arrays scene_node and truss_node must have space for scene->n_node indices. The function
- * sets the first *n_attachment entries of both arrays. Returns HF_OK, or HF_BAD_CASE with messages that list the
- * supports without a node within this distance. */
+ * sets the first *n_attachment entries of the arrays scene_node and truss_node. Returns HF_OK, or HF_BAD_CASE with
+ * messages that list the supports without a node within tolerance_m. */
 hf_status hf_truss_attach(const hf_truss *truss, const hf_scene *scene, double tolerance_m, int *n_attachment,
                           int *scene_node, int *truss_node, hf_messages *messages);
 
@@ -258,8 +258,8 @@ void hf_truss_free(hf_truss *truss);
  * id for each fault, up to a maximum number of messages. Returns HF_OK or HF_BAD_CASE. */
 hf_status hf_truss_check(const hf_truss *truss, hf_messages *messages);
 
-/* Defines the size in bytes of the buffer for hf_truss_describe. The size is sufficient for a path of HF_PATH_SIZE
- * bytes, a line number and an id of 255 bytes. The ids in tables have at most 255 bytes. */
+/* Defines the size in bytes of the buffer for hf_truss_describe. HF_TRUSS_DESCRIPTION_SIZE is sufficient for a path of
+ * HF_PATH_SIZE bytes, a line number and an id of 255 bytes. The ids in tables have at most 255 bytes. */
 #define HF_TRUSS_DESCRIPTION_SIZE (HF_PATH_SIZE + 300)
 
 /* Writes a description such as "truss_nodes.csv:7: node 'a'" to text[size] for use in messages. If the truss has no

@@ -100,7 +100,7 @@ typedef struct {
     HF_WORKSPACE_FIELDS(HF_WORKSPACE_MEMBER)
 #undef HF_WORKSPACE_MEMBER
     void *block; /* owned memory behind the fields */
-    /* Number of rows that Newton's matrix moves. The number is n_free. If net and truss are solved together, the number
+    /* Number of rows that Newton's matrix moves. The number is n_free. If net and truss are solved together, n_moving
      * also includes the attachments. */
     int n_moving;
     bool starts_near;                  /* q_N_per_m is that of a shape whose supports have other positions */
