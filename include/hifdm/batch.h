@@ -52,8 +52,8 @@ void hf_batch_run(hf_batch *batch, int n, const double *design, const unsigned c
  * results are the same as after a call of hf_optimiser_next and a call of hf_batch_run. The calling thread first calls
  * beside(context) once, unless `beside` is NULL. The other threads start their work while `beside` runs. The callback
  * `beside` must not read the population of the optimiser. The callback `beside` may read a copy of the population
- * struct if the caller makes the copy before hf_batch_next. Returns false if no generation is left. If no generation is
- * left, the function only calls `beside`. */
+ * struct that the caller makes before it calls hf_batch_next. Returns false if no generation is left. If no generation
+ * is left, the function only calls `beside`. */
 bool hf_batch_next(hf_batch *batch, hf_optimiser *optimiser, void (*beside)(void *context), void *context);
 
 /* Selects the solver for all later evaluations and creates the data that its threads share. The function factors the

@@ -198,9 +198,9 @@ static inline double hf_law_next_q_N_per_m(hf_law_cable c, double length_m, doub
     return next < HF_LAW_MIN_Q_N_PER_M ? HF_LAW_MIN_Q_N_PER_M : next; /* NaN is returned unchanged */
 }
 
-/* Returns the tension in N with which an iteration begins. If the cable can go slack and is taut between the target
- * positions of its ends, the iteration begins with the tension at these positions. For all other cables, the iteration
- * begins with the tension otherwise_N. The function limits the ratio of this tension to otherwise_N to the range from
+/* Returns the tension in N with which an iteration begins. If the cable can go slack and is taut between its target
+ * positions, the iteration begins with the tension at these positions. For all other cables, the iteration begins with
+ * the tension otherwise_N. The function limits the ratio of this tension to otherwise_N to the range from
  * 1/HF_LAW_FIRST_RANGE to HF_LAW_FIRST_RANGE. Without this limit, a stiff cable that is only just taut would carry
  * almost no force at the beginning. Without this limit, a stiff cable that was cut too short would carry almost the
  * entire force at the beginning. */

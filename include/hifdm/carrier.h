@@ -54,12 +54,12 @@ hf_status hf_carrier_load(const hf_carrier *carrier, const double *force_N, cons
 void hf_carrier_add_weight(const hf_carrier *carrier, const double gravity_m_per_s2[3], double *force);
 
 /* Returns the order of magnitude, in m, of the errors of linear theory in the positions of the attachments. If a member
- * of length r rotates by an angle a, the end of the member moves by u = r sin a along the tangent. Perpendicular to the
- * tangent, the end of the member moves by r (1 - cos a), which is about u a/2. Linear theory neglects this
- * displacement. In this estimate, the angle a is the maximum rotation of a member. The distance u is the maximum
- * displacement of an attachment. The function sets *move_m to the displacement u. The function sets *span_m to the
- * maximum distance between the first attachment and any other attachment. If all displacements of the state are zero,
- * the return value, *move_m and *span_m are 0. */
+ * of length r rotates by an angle a, its end moves by u = r sin a along the tangent. Perpendicular to the tangent, the
+ * end of the member moves by r (1 - cos a), which is about u a/2. Linear theory neglects this displacement. In this
+ * estimate, the angle a is the maximum rotation of a member. The distance u is the maximum displacement of an
+ * attachment. The function sets *move_m to the displacement u. The function sets *span_m to the maximum distance
+ * between the first attachment and any other attachment. If all displacements of the state are zero, the return value,
+ * *move_m and *span_m are 0. */
 double hf_carrier_second_order_m(const hf_carrier *carrier, const hf_carrier_state *state, double *move_m,
                                  double *span_m);
 

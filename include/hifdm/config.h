@@ -87,11 +87,11 @@ bool hf_config_location(const hf_case *settings, const char *key, char *text, si
 hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages *messages);
 
 /* Determines the target surface of a case that has a `surface` section. If the case has no `surface` section, the
- * function sets all members of *surface to zero. If the case does not specify the kind of surface, the function chooses
- * the kind whose surface is closer to the inner nodes of the scene. Returns HF_OK, or HF_BAD_CASE if the target
- * positions of the inner nodes are not on the surface. The error message contains the RMS distances of the inner nodes
- * from both kinds of surface. If the focal length is out of proportion to the aperture, the function adds a warning.
- * The check of the focal length does not require a `surface` section. */
+ * function sets all members of *surface to zero. If the case does not specify a kind of surface, the function chooses
+ * the kind that is closer to the inner nodes of the scene. Returns HF_OK, or HF_BAD_CASE if the target positions of the
+ * inner nodes are not on the surface. The error message contains the RMS distances of the inner nodes from both kinds
+ * of surface. If the focal length is out of proportion to the aperture, the function adds a warning. The check of the
+ * focal length does not require a `surface` section. */
 hf_status hf_config_surface(const hf_case *settings, const hf_scene *scene, hf_surface_settings *surface,
                             hf_messages *messages);
 

@@ -23,10 +23,10 @@ typedef struct {
 /* Finds the facets of a scene. The focal length surface->focal_length_m must be above 0. The kind surface->kind must
  * not be HF_SURFACE_AUTO.
  *
- * Inner nodes are on the target surface. Any other node is on the surface if the distance between its target position
- * and the surface is at most 1e-3 of the depth of the surface. If a cable connects a node with an inner node and stays
- * close to the surface, the node is also on the surface. The cable may deviate from the surface by at most 0.1 of its
- * length. Therefore, the nodes at the rim of a net are on the surface even if the truss of the net deflects.
+ * Inner nodes are on the target surface. Any other node is on the surface if its target position deviates from the
+ * surface by at most 1e-3 of the depth of the surface. If a cable connects a node with an inner node and stays close to
+ * the surface, the node is also on the surface. The cable may deviate from the surface by at most 0.1 of its length.
+ * Therefore, the nodes at the rim of a net are on the surface even if the truss of the net deflects.
  *
  * If the scene contains facets, the function uses the facets that have a node on the surface. If the scene contains no
  * facets, the function projects the cables between nodes on the surface along z. The projected cables form a plane

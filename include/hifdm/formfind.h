@@ -103,8 +103,8 @@ void hf_form_update(const hf_model *model, hf_workspace *workspace);
  * become straight because its supports move. */
 int hf_form_n_chain(const hf_model *model);
 
-/* Returns true if chain i_chain is straight in the shape of the workspace and carries a lateral load, or if the chain
- * is too short for its supports. The function overwrites force_N. */
+/* Returns true if chain i_chain is straight in the shape of the workspace and carries a lateral load. Also returns true
+ * if the chain is too short for its supports. The function overwrites force_N. */
 bool hf_form_chain_is_loaded(const hf_model *model, hf_workspace *workspace, int i_chain);
 
 /* Returns true if all cables of chain i_chain have law length and the chain is too short for its supports. The function

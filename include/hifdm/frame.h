@@ -88,8 +88,8 @@ double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, 
 
 /* Computes the flexibility matrix F of the n_point nodes in the array `node` (Eq. 15, condensed). Row 3*i+c of the
  * array flexibility_m_per_N [3 n_point][3 n_point] belongs to the displacement of node[i] along axis c. Column 3*k+d of
- * this array belongs to a unit force on node[k] along axis d. The flexibility matrix is exactly symmetric. Returns
- * HF_OK or HF_NO_MEMORY. */
+ * the flexibility matrix belongs to a unit force on node[k] along axis d. The flexibility matrix is exactly symmetric.
+ * Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
 
 HF_API_END

@@ -6,10 +6,10 @@
  * formfind, evaluate, population, optimiser, metrics, surface, store. The following rules apply to all headers.
  *
  * Stability: the comment at the head of each header states whether the header is stable or internal. A program that
- * uses only stable headers compiles and behaves in the same way with later versions. The file CHANGELOG.md lists the
- * changes that affect such programs. A later version may add members to structs. Initialise structs to zero, set
- * members by name, and recompile for each version. An internal header is installed only because a stable header needs
- * its types. The names in an internal header and their meaning may change in any version.
+ * uses only stable headers compiles and behaves in the same way with later versions. The file CHANGELOG.md lists all
+ * exceptions to this compatibility. A later version may add members to structs. Initialise structs to zero, set members
+ * by name, and recompile for each version. An internal header is installed only because a stable header needs its
+ * types. The names in an internal header and their meaning may change in any version.
  *
  * Units: all quantities are in SI units. The last part of a name is the unit (psi_m, tension_N, q_N_per_m, wall_s). A
  * quantity without a unit in its name is dimensionless.

@@ -68,8 +68,8 @@ typedef struct {
 
     /* The rows of optimize.variables define the design variables. By default, the design variables are the pretensions
      * of the boundary cables that end at a free node. If exactly two varied cables meet at a free node, their design
-     * variables belong to the same chain. A chain of design variables is a group of design variables. Unequal changes
-     * within a chain push its nodes along the chain, and equal changes change its sag. */
+     * variables belong to the same chain. Unequal changes within a chain push its nodes along the chain, and equal
+     * changes change its sag. */
     int n_variable, n_variable_group; /* numbers of design variables and of chains */
     int *variable_cable;              /* [n_variable] varied cable; -1: the variable displaces a support */
     int *variable_group;              /* [n_variable] index of the chain, 0 to n_variable_group-1 */

@@ -51,8 +51,8 @@ typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *sh
 
 /* Describes the as-built nets of a design on which objectives may be measured. The nets are the load cases of the
  * design, followed by samples of its errors. The module built/built_nets.h makes the as-built nets and supplies the
- * functions of this struct. The pointers are necessary because built/built_nets.h depends on this module. The shape of
- * an as-built net depends only on the design and on the index of the net. */
+ * functions of this struct. This module calls the functions through pointers because built/built_nets.h depends on this
+ * module. The shape of an as-built net depends only on the design and on the index of the net. */
 typedef struct hf_objectives_nets {
     int n_load_case, n_sample;         /* number of load cases and number of samples */
     const char *const *load_case_name; /* [n_load_case] names of the load cases */

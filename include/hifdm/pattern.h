@@ -33,10 +33,10 @@ typedef struct {
 } hf_feed;
 
 /* Determines the feed that surface->pattern describes. The array position_m [n_node][3] contains the positions of the
- * facet nodes in m. By default the feed is at the focus of the target surface and points to the middle of the aperture.
- * By default, the exponent cos_power makes the field of the feed 10 dB weaker at the edge of the facets than on the
- * axis. The kind surface->kind must not be HF_SURFACE_AUTO. The surface must have at least one facet. Returns the
- * number of facets whose front side, towards +z, the feed does not illuminate. If the feed does not illuminate all
+ * facet nodes in m. By default, the feed is at the focus of the target surface and points to the middle of the
+ * aperture. By default, the exponent cos_power makes the field of the feed 10 dB weaker at the edge of the facets than
+ * on the axis. The kind surface->kind must not be HF_SURFACE_AUTO. The surface must have at least one facet. Returns
+ * the number of facets whose front side, towards +z, the feed does not illuminate. If the feed does not illuminate all
  * facets, the far field of the surface cannot be computed. */
 int hf_feed_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m, hf_feed *feed);
 

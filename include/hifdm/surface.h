@@ -101,8 +101,8 @@ HF_API_BEGIN
  * shift shift_x_m is 0. The shift shift_x_m is also 0 if the minimum needs a shift of more than a tenth of the
  * half-width of the net. For a paraboloid, the rules for shift_x_m also apply to shift_y_m. If the minimum is not
  * found, the focal length focal_length_m is the focal length of the target surface. If the focal length of the minimum
- * differs from the target focal length by more than a factor of 2, the fit uses the target focal length. Points on two
- * lines along y, for example, do not determine the focal length. */
+ * differs from its target by more than a factor of 2, the fit uses the target focal length. Points on two lines along
+ * y, for example, do not determine the focal length. */
 typedef struct {
     HF_SURFACE_FIT_LIST(HF_SURFACE_MEMBER)
 } hf_surface_fit;
