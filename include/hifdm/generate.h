@@ -57,22 +57,21 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
  * members in hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
     X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
-      "The key `rear_distance_m` sets the distance of the rim of the rear net below the rim of the front net. Ties "   \
-      "connect the free nodes of the front net to the free nodes of the rear net. If the key `rear_distance_m` is 0, " \
-      "hifdm generates no rear net")                                                                                   \
+      "Sets the distance of the rim of the rear net below the rim of the front net. Ties connect the free nodes of "   \
+      "the front net to the free nodes of the rear net. If this key is 0, hifdm generates no rear net")                \
     X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
-      "The key `rear_focal_length_m` sets the focal length of the rear net. The rear net is curved towards the front " \
-      "net. If the key `rear_focal_length_m` is 0, the rear net has the focal length of the front net")                \
+      "Sets the focal length of the rear net. The rear net is curved towards the front net. If this key is 0, the "    \
+      "rear net has the focal length of the front net")                                                                \
     X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"),                                   \
-      "The key `tie_direction` selects the direction of the ties. The value `z` of the key `tie_direction` selects "   \
-      "the z axis. The value `normal` of the key `tie_direction` selects the normal of the front net")                 \
+      "Selects the direction of the ties. The value `z` selects the z axis. The value `normal` selects the normal of " \
+      "the front net")                                                                                                 \
     X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", ((const char *const[]){HF_LAW_LIST(HF_LAW_WORD) NULL}),     \
-      "The key `tie_law` selects the law of the ties between the front net and the rear net. The inner cables of the " \
-      "front net and of the rear net have the law `tension`. The boundary cables of the front net and of the rear "    \
-      "net have the law `length`")                                                                                     \
+      "Selects the law of the ties between the front net and the rear net. The inner cables of the front net and of "  \
+      "the rear net have the law `tension`. The boundary cables of the front net and of the rear net have the law "    \
+      "`length`")                                                                                                      \
     X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
-      "The key `tie_tension_N` sets the tension of the ties at the target positions. The key `tie_tension_N` applies " \
-      "only to ties with the law `tension`, `force_density` or `elastic`")
+      "Sets the tension of the ties at the target positions. This key applies only to ties with the law `tension`, "   \
+      "`force_density` or `elastic`")
 
 /* ---- parabolic_cylinder ---- */
 
@@ -111,50 +110,47 @@ typedef struct {
  * hf_field_table (config.h). */
 #define HF_CYLINDER_KEYS(X, section)                                                                                   \
     X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                       \
-      "The key `aperture_m` sets the aperture of the net along the directrix (x)")                                     \
+      "Sets the aperture of the net along the directrix (x)")                                                          \
     X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                         \
-      "The key `length_m` sets the length of the net along the generatrix (y)")                                        \
+      "Sets the length of the net along the generatrix (y)")                                                           \
     X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
-      "The key `focal_length_m` sets the focal length f of the parabolic cylinder z = x^2/(4f)")                       \
+      "Sets the focal length f of the parabolic cylinder z = x^2/(4f)")                                                \
     X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                                    \
-      "The key `modules` sets the number of modules along the directrix and along the generatrix")                     \
+      "Sets the number of modules along the directrix and along the generatrix")                                       \
     X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                           \
-      "The key `cells_per_module` sets the number of net cells in each module, along the directrix and along the "     \
-      "generatrix")                                                                                                    \
+      "Sets the number of net cells in each module, along the directrix and along the generatrix")                     \
     X(section, pitches_x_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "The key `pitches_x_m` lists the projected widths of the modules along x, from left to right. The sum of the "   \
-      "module widths must be equal to `aperture_m`. Within each module, the key `spacing` determines the spacing of "  \
-      "the nodes. Without the key `pitches_x_m`, hifdm divides the aperture into equal modules")                       \
+      "Lists the projected widths of the modules along x, from left to right. The sum of the module widths must be "   \
+      "equal to `aperture_m`. Within each module, the key `spacing` determines the spacing of the nodes. Without "     \
+      "this key, hifdm divides the aperture into equal modules")                                                       \
     X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "The key `pitches_y_m` lists the lengths of the modules along y. The sum of the module lengths must be equal "   \
-      "to `length_m`. Without the key `pitches_y_m`, hifdm divides the length into equal modules")                     \
+      "Lists the lengths of the modules along y. The sum of the module lengths must be equal to `length_m`. Without "  \
+      "this key, hifdm divides the length into equal modules")                                                         \
     X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", HF_WORDS("quad", "triangle", "diagonal", "alternating"),      \
-      "The key `pattern` selects the pattern of the cables. The pattern `quad` has cables along x and y. The pattern " \
-      "`triangle` adds one diagonal to each cell of the pattern `quad`, always in the same direction. The pattern "    \
-      "`alternating` adds one diagonal to each cell of the pattern `quad`, in alternating directions. The pattern "    \
-      "`diagonal` has four half diagonals in each cell. The half diagonals of a cell meet at a node in the middle of " \
-      "the cell. The pattern `diagonal` also has boundary cables along x and y. In all patterns except `quad`, hifdm " \
-      "omits cables between two supports")                                                                             \
+      "Selects the pattern of the cables. The pattern `quad` has cables along x and y. The pattern `triangle` adds "   \
+      "one diagonal to each cell of the pattern `quad`, always in the same direction. The pattern `alternating` adds " \
+      "one diagonal to each cell of the pattern `quad`, in alternating directions. The pattern `diagonal` has four "   \
+      "half diagonals in each cell. The half diagonals of a cell meet at a node in the middle of the cell. The "       \
+      "pattern `diagonal` also has boundary cables along x and y. In all patterns except `quad`, hifdm omits cables "  \
+      "between two supports")                                                                                          \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
-      "The key `spacing` selects the spacing of the nodes along the directrix. The value `equal_arc` of the key "      \
-      "`spacing` selects equal arc lengths. The value `equal_projected` of the key `spacing` selects equal projected " \
-      "distances along x")                                                                                             \
+      "Selects the spacing of the nodes along the directrix. The value `equal_arc` selects equal arc lengths. The "    \
+      "value `equal_projected` selects equal projected distances along x")                                             \
     X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", HF_WORDS("outer_edge", "module_edges"),                \
-      "The key `boundary` selects the boundary cables of the net. Boundary cables have the law `length`. Cables that " \
-      "are not boundary cables are inner cables with the law `tension`")                                               \
+      "Selects the boundary cables of the net. Boundary cables have the law `length`. Cables that are not boundary "   \
+      "cables are inner cables with the law `tension`")                                                                \
     X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL,                                                        \
-      "The key `scallop` sets the inward sag of a free outer edge between two supports. The value of the key "         \
-      "`scallop` is the sag divided by the distance between the two supports. A scalloped edge has the shape of a "    \
-      "parabola")                                                                                                      \
+      "Sets the inward sag of a free outer edge between two supports. The value is the sag divided by the distance "   \
+      "between the two supports. A scalloped edge has the shape of a parabola")                                        \
     X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", HF_WORDS("module_corners", "ribs", "perimeter"),   \
-      "The key `supports` selects the fixed nodes. The value `module_corners` of the key `supports` selects all "      \
-      "corners of the modules. The value `ribs` of the key `supports` selects all nodes on module borders along x. "   \
-      "The value `perimeter` of the key `supports` selects all nodes on the perimeter of the net")                     \
+      "Selects the fixed nodes. The value `module_corners` selects all corners of the modules. The value `ribs` "      \
+      "selects all nodes on module borders along x. The value `perimeter` selects all nodes on the perimeter of the "  \
+      "net")                                                                                                           \
     X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
-      "The key `edge_tie_m` sets the distance along x or y from the outer edge to the supports of the edge ties. "     \
-      "Edge ties connect nodes of the outer edge to supports outside the net. Edge ties are boundary cables with the " \
-      "law `length`. At a corner of the net, an edge tie extends by the same distance along x and along y. If the "    \
-      "key `edge_tie_m` is 0, the net has no edge ties. Without edge ties, the supports are nodes of the net")         \
+      "Sets the distance along x or y from the outer edge to the supports of the edge ties. Edge ties connect nodes "  \
+      "of the outer edge to supports outside the net. Edge ties are boundary cables with the law `length`. At a "      \
+      "corner of the net, an edge tie extends by the same distance along x and along y. If this key is 0, the net "    \
+      "has no edge ties. Without edge ties, the supports are nodes of the net")                                        \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the parabolic cylinder.
@@ -201,24 +197,23 @@ typedef struct {
 
 /* Defines the keys of the section in the form of HF_CYLINDER_KEYS. */
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
-    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                       \
-      "The key `aperture_m` sets the diameter of the aperture")                                                        \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Sets the diameter of the aperture")  \
     X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
-      "The key `focal_length_m` sets the focal length f of the paraboloid z = (x^2 + y^2)/(4f)")                       \
+      "Sets the focal length f of the paraboloid z = (x^2 + y^2)/(4f)")                                                \
     X(section, offset_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                                      \
-      "The key `offset_m` sets the distance along x from the axis of the paraboloid to the centre of the aperture. "   \
-      "If the key `offset_m` is 0, the reflector is centre-fed")                                                       \
+      "Sets the distance along x from the axis of the paraboloid to the centre of the aperture. If this key is 0, "    \
+      "the reflector is centre-fed")                                                                                   \
     X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL,                                                           \
-      "The key `rings` sets the number of cells from the centre of the aperture to its rim")                           \
+      "Sets the number of cells from the centre of the aperture to its rim")                                           \
     X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", HF_WORDS("triangle", "quad"),                                \
-      "The key `grid` selects the grid of the cables. The grid `triangle` has three families of cables. The first "    \
-      "ring of the grid `triangle` has 6 nodes, and each further ring has 6 additional nodes. In the grid "            \
-      "`triangle`, the nodes of the last ring are supports on the rim. The grid `quad` has cables along x and y. The " \
-      "cables of the grid `quad` end at supports on the rim")                                                          \
+      "Selects the grid of the cables. The grid `triangle` has three families of cables. The first ring of the grid "  \
+      "`triangle` has 6 nodes, and each further ring has 6 additional nodes. In the grid `triangle`, the nodes of "    \
+      "the last ring are supports on the rim. The grid `quad` has cables along x and y. The cables of the grid "       \
+      "`quad` end at supports on the rim")                                                                             \
     X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \
-      "The key `spacing` selects the spacing of the nodes along a radius of the aperture. The value "                  \
-      "`equal_projected` of the key `spacing` selects equal projected distances. The value `equal_arc` of the key "    \
-      "`spacing` selects equal arc lengths on a paraboloid around the centre of the aperture")                         \
+      "Selects the spacing of the nodes along a radius of the aperture. The value `equal_projected` selects equal "    \
+      "projected distances. The value `equal_arc` selects equal arc lengths on a paraboloid around the centre of the " \
+      "aperture")                                                                                                      \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the paraboloid.
