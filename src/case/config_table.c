@@ -396,7 +396,7 @@ static const hf_field variable_field[] = {
      "limits the quantity"},
     {"link", HF_FIELD_WORD, IN(variable, link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry"),
      "Selects the design variables that change together. If the value is `each`, every cable changes independently. If "
-     "this key is `set`, all cables of the row change by the same amount. If the value is `symmetry`, cables that are "
+     "the value is `set`, all cables of the row change by the same amount. If the value is `symmetry`, cables that are "
      "mirror images of each other change by the same amount. The key `optimize.symmetry` selects the mirror planes of "
      "the net"},
 };
@@ -465,7 +465,7 @@ static const hf_field cable_field[] = {
      "Selects the cables to which the row applies. The value is the name of a set of cables, or `inner`, `boundary` or "
      "`all`"},
     {"expansion_per_K", HF_FIELD_DOUBLE, IN(cable, expansion_per_K), -1, 1, "", "1/K", NULL,
-     "Sets the coefficient of thermal expansion of the cables. If this key is 0, the cables have no thermal expansion"},
+     "Sets the coefficient of thermal expansion of the cables. If the value is 0, the cables have no thermal expansion"},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(cable, mass_kg_per_m), 0, 1e6, "", "kg/m", NULL,
      "Sets the mass of the cables per metre of unstressed length"},
 };
