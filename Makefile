@@ -88,7 +88,7 @@ ISAS := portable avx2 avx512
 KERNELS := $(wildcard src/*/*_kernel.c)
 sources = $(sort $(foreach room,$(1),$(wildcard src/$(room)/*.c)))
 LIB_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(KERNELS),$(call sources,$(LIB_ROOMS)))) \
-           $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/%_$(isa).o))
+           $(foreach isa,$(ISAS),$(KERNELS:%.c=$(BUILD)/%_$(isa).o)) $(BUILD)/key_help_text.o
 # The page of `hifdm report`: its parts in order, as three strings that report.h declares.
 PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js table.js net_fast.js net.js net_hand.js cables.js map.js sections.js \
@@ -497,6 +497,15 @@ $(BUILD)/words_text.c: src/manual/glossary.md Makefile
 	$(call say,PAGE,$@)
 	@mkdir -p $(@D)
 	$(Q){ echo '#include "out/words.h"'; $(call bytes,char hf_words_text,$<); } >$@.tmp
+	$(Q)mv $@.tmp $@
+
+# Of keys.md, each path with its paragraph in one line; a NUL ends each of them.
+$(BUILD)/key_help_text.c: src/case/keys.md Makefile
+	$(call say,PAGE,$@)
+	@mkdir -p $(@D)
+	$(Q)awk -v RS= '/^### / { n = split(substr($$0, 5), path, ", "); next } \
+	  n { gsub(/\n/, " "); for (i = 1; i <= n; i++) print path[i] "\n" $$0; n = 0 }' $< | tr '\n' '\0' >$@.bytes
+	$(Q){ $(call bytes,extern const char hf_config_help_text[]; const char hf_config_help_text,$@.bytes); } >$@.tmp
 	$(Q)mv $@.tmp $@
 
 $(BUILD)/%_text.o: $(BUILD)/%_text.c $(BUILD)/flags

@@ -68,13 +68,6 @@ def of_messages(path):
                                  ("" if part.endswith((".", "!", "?")) else "."))
 
 
-def of_keys(path):
-    """Yields the meanings of the keys in a table of a case file, as `hifdm schema` prints them, with a full stop."""
-    code = strings.COMMENT.sub("", path.read_text(encoding="utf-8"))
-    for group in re.finditer(r'"(?:[^"\\\n]|\\.)*"(?:\s*(?:\\\n)?\s*"(?:[^"\\\n]|\\.)*")*', code):
-        yield from sentences("".join(strings.LITERAL.findall(group.group())).rstrip(".") + ".")
-
-
 def ours():
     """Returns {kind: [(source, sentence)]}."""
     def markdown(*patterns):
@@ -88,9 +81,7 @@ def ours():
              "changelog": markdown("CHANGELOG.md"), "explain": [
                  (p.relative_to(TOP), s) for p in [TOP / "src/manual/glossary.md"]
                  for s in of_markdown(p.read_text(encoding="utf-8"))], "messages": [
-                 (p.relative_to(TOP), s) for p in sorted(TOP.glob("src/**/*.c")) for s in of_messages(p)], "schema": [
-                 (p.relative_to(TOP), s) for p in [TOP / "src/case/config_table.c", TOP / "include/hifdm/generate.h",
-                                                   TOP / "include/hifdm/truss.h"] for s in of_keys(p)]}
+                 (p.relative_to(TOP), s) for p in sorted(TOP.glob("src/**/*.c")) for s in of_messages(p)], "schema": markdown("src/case/keys.md")}
     for name, _, lines in strings.texts():
         kind = {"include": "headers", "tools": "docstrings"}.get(name.parts[0])
         if name.suffix in (".html", ".js"):

@@ -37,7 +37,7 @@ typedef struct {
     bool has_import, has_optimize, has_surface; /* which sections the case has */
     bool has_tolerance;                         /* the case has a section tolerance */
     bool has_sweep; /* the case has a section sweep; its lines are not in `text`, and study.h reads its axes */
-#define HF_CASE_GENERATOR(section, type, KEYS, help)                                                                   \
+#define HF_CASE_GENERATOR(section, type, KEYS)                                                                   \
     bool has_##section;                                                                                                \
     type section;
     HF_GENERATORS(HF_CASE_GENERATOR)
@@ -158,14 +158,12 @@ typedef struct {
     const char *default_value;
     const char *unit;         /* unit; "": dimensionless */
     const char *const *words; /* words of HF_FIELD_WORD by enumeration, terminated by NULL; NULL for other types */
-    const char *help;         /* help of the key */
 } hf_field;
 
 /* Describes a section of a case file. */
 typedef struct {
     const char *path;      /* name, "scene.import" */
     size_t present_offset; /* offset of the bool in hf_case that states whether the section exists; SIZE_MAX: none */
-    const char *help;      /* help of the section */
 } hf_section;
 
 /* A list of rows. A row is a section without a name. The keys of a row have names such as
@@ -177,7 +175,6 @@ typedef struct {
     int max_row;                 /* maximum number of rows */
     const hf_field *field;       /* [n_field] keys of a row; their path is the last part of the name, "range" */
     int n_field;                 /* number of keys of a row */
-    const char *help;            /* help of the list */
 } hf_list;
 
 /* Creates a NULL-terminated list of words for a single row of the table. */
@@ -191,6 +188,10 @@ extern const hf_section hf_section_table[]; /* [hf_n_section] sections */
 extern const int hf_n_section;              /* number of sections */
 extern const hf_list hf_list_table[];       /* [hf_n_list] lists of rows */
 extern const int hf_n_list;                 /* number of lists */
+
+/* Returns the description of a section, a list or a key from src/case/keys.md. If `key` is not NULL, `path` is the list
+ * and `key` is a key of its rows. Returns "" if there is no description. */
+const char *hf_config_help(const char *path, const char *key);
 
 /* Checks a value against the rules of a key in the table. An example of a key is "optimize.variables.0.range". The
  * string `value` has the form that it would have in a case file. Returns HF_OK, HF_NO_MEMORY, or HF_BAD_CASE with a

@@ -24,19 +24,11 @@
 
 HF_API_BEGIN
 
-/* Each row X(name of the section, type of the settings, keys, help) defines one generator. `hifdm schema` lists the
+/* Each row X(name of the section, type of the settings, keys) defines one generator. `hifdm schema` lists the
  * generators in this order. */
 #define HF_GENERATORS(X)                                                                                               \
-    X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS,                                                               \
-      "The section `parabolic_cylinder` generates a net over a parabolic cylinder.")                                   \
-    X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS,                                                                   \
-      "The section `paraboloid` generates a net over a paraboloid with a round aperture. The section `paraboloid` "    \
-      "can also generate a rear net.")
-/* Defines the help of the section `scene`. The help lists all generators, and `import`. */
-#define HF_GENERATORS_HELP                                                                                             \
-    "The section `scene` defines the net. A case file contains exactly one of the sections `parabolic_cylinder`, "     \
-    "`paraboloid` and `import`."
-
+    X(parabolic_cylinder, hf_cylinder, HF_CYLINDER_KEYS)                                                               \
+    X(paraboloid, hf_paraboloid, HF_PARABOLOID_KEYS)
 #define HF_GENERATE_FAULT_SIZE 256 /* size in bytes of the reason why a net cannot be made */
 
 /* ---- rear nets, which several generators can make ---- */
@@ -53,25 +45,14 @@ typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
     hf_law tie_law;                 /* law of the ties */                                                              \
     double tie_tension_N; /* tension of the ties at the target positions (laws tension, force_density, elastic) */
 
-/* Each row X(section, member, type, minimum, maximum, default, unit, words, help) defines the key of one of these
+/* Each row X(section, member, type, minimum, maximum, default, unit, words) defines the key of one of these
  * members in hf_field_table (config.h). */
 #define HF_DOUBLE_NET_KEYS(X, section)                                                                                 \
-    X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                               \
-      "Sets the distance of the rim of the rear net below the rim of the front net. Ties connect the free nodes of "   \
-      "the front net to the free nodes of the rear net. If this key is 0, hifdm generates no rear net")                \
-    X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL,                                           \
-      "Sets the focal length of the rear net. The rear net is curved towards the front net. If this key is 0, the "    \
-      "rear net has the focal length of the front net")                                                                \
-    X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"),                                   \
-      "Selects the direction of the ties. The value `z` selects the z axis. The value `normal` selects the normal of " \
-      "the front net")                                                                                                 \
-    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", ((const char *const[]){HF_LAW_LIST(HF_LAW_WORD) NULL}),     \
-      "Selects the law of the ties between the front net and the rear net. The inner cables of the front net and of "  \
-      "the rear net have the law `tension`. The boundary cables of the front net and of the rear net have the law "    \
-      "`length`")                                                                                                      \
-    X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL,                                     \
-      "Sets the tension of the ties at the target positions. This key applies only to ties with the law `tension`, "   \
-      "`force_density` or `elastic`")
+    X(section, rear_distance_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL)                                               \
+    X(section, rear_focal_length_m, HF_FIELD_DOUBLE, 0, 1e9, "0", "m", NULL)                                           \
+    X(section, tie_direction, HF_FIELD_WORD, 0, 0, "z", "", HF_WORDS("z", "normal"))                                   \
+    X(section, tie_law, HF_FIELD_WORD, 0, 0, "length", "", ((const char *const[]){HF_LAW_LIST(HF_LAW_WORD) NULL}))     \
+    X(section, tie_tension_N, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, "1", "N", NULL)
 
 /* ---- parabolic_cylinder ---- */
 
@@ -106,51 +87,22 @@ typedef struct {
     HF_DOUBLE_NET_MEMBERS
 } hf_cylinder;
 
-/* Each row X(section, member, type, minimum, maximum, default, unit, words, help) defines a key of the section in
+/* Each row X(section, member, type, minimum, maximum, default, unit, words) defines a key of the section in
  * hf_field_table (config.h). */
 #define HF_CYLINDER_KEYS(X, section)                                                                                   \
-    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                       \
-      "Sets the aperture of the net along the directrix (x)")                                                          \
-    X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL,                                         \
-      "Sets the length of the net along the generatrix (y)")                                                           \
-    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
-      "Sets the focal length f of the parabolic cylinder z = x^2/(4f)")                                                \
-    X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                                    \
-      "Sets the number of modules along the directrix and along the generatrix")                                       \
-    X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL,                                           \
-      "Sets the number of net cells in each module, along the directrix and along the generatrix")                     \
-    X(section, pitches_x_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "Lists the projected widths of the modules along x, from left to right. The sum of the module widths must be "   \
-      "equal to `aperture_m`. Within each module, the key `spacing` determines the spacing of the nodes. Without "     \
-      "this key, hifdm divides the aperture into equal modules")                                                       \
-    X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL,                                 \
-      "Lists the lengths of the modules along y. The sum of the module lengths must be equal to `length_m`. Without "  \
-      "this key, hifdm divides the length into equal modules")                                                         \
-    X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", HF_WORDS("quad", "triangle", "diagonal", "alternating"),      \
-      "Selects the pattern of the cables. The pattern `quad` has cables along x and y. The pattern `triangle` adds "   \
-      "one diagonal to each cell of the pattern `quad`, always in the same direction. The pattern `alternating` adds " \
-      "one diagonal to each cell of the pattern `quad`, in alternating directions. The pattern `diagonal` has four "   \
-      "half diagonals in each cell. The half diagonals of a cell meet at a node in the middle of the cell. The "       \
-      "pattern `diagonal` also has boundary cables along x and y. In all patterns except `quad`, hifdm omits cables "  \
-      "between two supports")                                                                                          \
-    X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word,                                         \
-      "Selects the spacing of the nodes along the directrix. The value `equal_arc` selects equal arc lengths. The "    \
-      "value `equal_projected` selects equal projected distances along x")                                             \
-    X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", HF_WORDS("outer_edge", "module_edges"),                \
-      "Selects the boundary cables of the net. Boundary cables have the law `length`. Cables that are not boundary "   \
-      "cables are inner cables with the law `tension`")                                                                \
-    X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL,                                                        \
-      "Sets the inward sag of a free outer edge between two supports. The value is the sag divided by the distance "   \
-      "between the two supports. A scalloped edge has the shape of a parabola")                                        \
-    X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", HF_WORDS("module_corners", "ribs", "perimeter"),   \
-      "Selects the fixed nodes. The value `module_corners` selects all corners of the modules. The value `ribs` "      \
-      "selects all nodes on module borders along x. The value `perimeter` selects all nodes on the perimeter of the "  \
-      "net")                                                                                                           \
-    X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL,                                                    \
-      "Sets the distance along x or y from the outer edge to the supports of the edge ties. Edge ties connect nodes "  \
-      "of the outer edge to supports outside the net. Edge ties are boundary cables with the law `length`. At a "      \
-      "corner of the net, an edge tie extends by the same distance along x and along y. If this key is 0, the net "    \
-      "has no edge ties. Without edge ties, the supports are nodes of the net")                                        \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL)                                       \
+    X(section, length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL)                                         \
+    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL)                                   \
+    X(section, modules, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL)                                                    \
+    X(section, cells_per_module, HF_FIELD_INT_PAIR, 1, 2000, NULL, "", NULL)                                           \
+    X(section, pitches_x_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL)                                 \
+    X(section, pitches_y_m, HF_FIELD_DOUBLE_LIST, HF_ABOVE_ZERO, 1e4, "[]", "m", NULL)                                 \
+    X(section, pattern, HF_FIELD_WORD, 0, 0, "quad", "", HF_WORDS("quad", "triangle", "diagonal", "alternating"))      \
+    X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_arc", "", hf_spacing_word)                                         \
+    X(section, boundary, HF_FIELD_WORD, 0, 0, "outer_edge", "", HF_WORDS("outer_edge", "module_edges"))                \
+    X(section, scallop, HF_FIELD_DOUBLE, 0, 0.4, "0", "", NULL)                                                        \
+    X(section, supports, HF_FIELD_WORD, 0, 0, "module_corners", "", HF_WORDS("module_corners", "ribs", "perimeter"))   \
+    X(section, edge_tie_m, HF_FIELD_DOUBLE, 0, 1e3, "0", "m", NULL)                                                    \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the parabolic cylinder.
@@ -197,23 +149,12 @@ typedef struct {
 
 /* Defines the keys of the section in the form of HF_CYLINDER_KEYS. */
 #define HF_PARABOLOID_KEYS(X, section)                                                                                 \
-    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL, "Sets the diameter of the aperture")  \
-    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL,                                   \
-      "Sets the focal length f of the paraboloid z = (x^2 + y^2)/(4f)")                                                \
-    X(section, offset_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL,                                                      \
-      "Sets the distance along x from the axis of the paraboloid to the centre of the aperture. If this key is 0, "    \
-      "the reflector is centre-fed")                                                                                   \
-    X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL,                                                           \
-      "Sets the number of cells from the centre of the aperture to its rim")                                           \
-    X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", HF_WORDS("triangle", "quad"),                                \
-      "Selects the grid of the cables. The grid `triangle` has three families of cables. The first ring of the grid "  \
-      "`triangle` has 6 nodes, and each further ring has 6 additional nodes. In the grid `triangle`, the nodes of "    \
-      "the last ring are supports on the rim. The grid `quad` has cables along x and y. The cables of the grid "       \
-      "`quad` end at supports on the rim")                                                                             \
-    X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word,                                   \
-      "Selects the spacing of the nodes along a radius of the aperture. The value `equal_projected` selects equal "    \
-      "projected distances. The value `equal_arc` selects equal arc lengths on a paraboloid around the centre of the " \
-      "aperture")                                                                                                      \
+    X(section, aperture_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e4, NULL, "m", NULL)                                       \
+    X(section, focal_length_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e9, NULL, "m", NULL)                                   \
+    X(section, offset_m, HF_FIELD_DOUBLE, 0, 1e4, "0", "m", NULL)                                                      \
+    X(section, rings, HF_FIELD_INT, 1, 1000, NULL, "", NULL)                                                           \
+    X(section, grid, HF_FIELD_WORD, 0, 0, "triangle", "", HF_WORDS("triangle", "quad"))                                \
+    X(section, spacing, HF_FIELD_WORD, 0, 0, "equal_projected", "", hf_spacing_word)                                   \
     HF_DOUBLE_NET_KEYS(X, section)
 
 /* Makes the net over the paraboloid.

@@ -141,69 +141,38 @@ typedef struct {
 } hf_truss_settings;
 
 /* Defines the keys of the `truss` section and of each of its units. The macro arguments are the default diameter of the
- * tubes and the default number of panels. Each row X(section, member, type, minimum, maximum, default, unit, words,
- * help) defines a key in hf_field_table (config.h). */
+ * tubes and the default number of panels. Each row X(section, member, type, minimum, maximum, default, unit, words) defines a key in hf_field_table (config.h). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
-    X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL,                                           \
-      "Sets the distance between the front chords and the rear chords, along the normal of the surface")               \
-    X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL,                                                       \
-      "Sets the interval between module borders with main units (`mbug`), along y. hifdm counts the module borders "   \
-      "from both edges of the net. Module borders along y without main units have assistant units (`abug`)")           \
-    X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL, "Sets Young's modulus of the tubes")   \
-    X(section, G_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL,                                          \
-      "Sets the shear modulus of the tubes. An isotropic material has the shear modulus E/(2(1+nu)), with Young's "    \
-      "modulus E and Poisson's ratio nu")                                                                              \
-    X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL, "Sets the density of the tubes")     \
-    X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL,                                              \
-      "Sets the coefficient of thermal expansion of the tubes")                                                        \
-    X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL, "Sets the mass of the hinges at each node")    \
-    X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", HF_WORDS("euler_bernoulli", "timoshenko"),          \
-      "Selects the beam theory. The theory `euler_bernoulli` neglects shear deformation. The theory `timoshenko` "     \
-      "uses half the cross-section area as the shear area, as for a thin round tube")                                  \
-    X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word,                                                \
-      "Selects the kind of joints between members and nodes. Rigid joints clamp a member to its nodes. Pinned joints " \
-      "transmit only axial force")                                                                                     \
-    X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", HF_WORDS("central_module", "central_module_rear"), \
-      "Selects the nodes that the spacecraft holds. The value `central_module` selects all corners of the central "    \
-      "module. The value `central_module_rear` selects only the rear corners of the central module")                   \
-    X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", HF_WORDS("all", "translations"),                          \
-      "Selects the degrees of freedom that are fixed at the nodes that the spacecraft holds. The value `all` selects " \
-      "displacements and rotations. The value `translations` selects only displacements")
+    X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL)                                           \
+    X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL)                                                       \
+    X(section, E_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "130e9", "Pa", NULL)                                        \
+    X(section, G_Pa, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e15, "5e9", "Pa", NULL)                                          \
+    X(section, density_kg_per_m3, HF_FIELD_DOUBLE, 0, 1e6, "1600", "kg/m3", NULL)                                      \
+    X(section, expansion_per_K, HF_FIELD_DOUBLE, -1, 1, "0", "1/K", NULL)                                              \
+    X(section, hinge_mass_kg, HF_FIELD_DOUBLE, 0, 1e6, "1", "kg", NULL)                                                \
+    X(section, theory, HF_FIELD_WORD, 0, 0, "euler_bernoulli", "", HF_WORDS("euler_bernoulli", "timoshenko"))          \
+    X(section, joints, HF_FIELD_WORD, 0, 0, "rigid", "", hf_joint_word)                                                \
+    X(section, supports, HF_FIELD_WORD, 0, 0, "central_module", "", HF_WORDS("central_module", "central_module_rear")) \
+    X(section, support_dofs, HF_FIELD_WORD, 0, 0, "all", "", HF_WORDS("all", "translations"))
 
 #define HF_TRUSS_UNIT_KEYS(X, section, diameter, panel_number)                                                         \
-    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL,                                    \
-      "Sets the outer diameter of the tubes")                                                                          \
-    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "Sets the wall thickness of the tubes")  \
-    X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL, "Sets the number of panels along one module")    \
-    X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                        \
-      "Selects no diagonals, single diagonals or crossed diagonals for the panels")
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL)                                    \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL)                                          \
+    X(section, panels, HF_FIELD_INT, 1, 1000, panel_number, "", NULL)                                                  \
+    X(section, diagonals, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word)
 
 /* Defines the keys of the section truss.ring and of each of its tubes. The macro argument is the default diameter of
  * the tubes. */
 #define HF_RING_KEYS(X, section)                                                                                       \
-    X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL,                                           \
-      "Sets the distance of the rear ring below the front ring, along z. By default, the distance between the rings "  \
-      "is the value of `rear_distance_m` of the net")                                                                  \
-    X(section, cells_per_bay, HF_FIELD_INT, 1, 6000, "1", "", NULL,                                                    \
-      "Sets the number of net cells along the rim in one bay of the ring. Each bay of the ring has a vertical at "     \
-      "each end. Between the verticals, the longerons change direction at the supports of the net")                    \
-    X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word,                                          \
-      "Selects no diagonals, single diagonals or crossed diagonals for the bays. Single diagonals alternate in "       \
-      "direction from bay to bay")                                                                                     \
-    X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", HF_WORDS("bay", "vertical", "three_verticals"),                   \
-      "Selects the joints that the spacecraft or the ground holds. The value `bay` selects the four joints of a bay. " \
-      "The value `vertical` selects the two joints of a vertical. The value `three_verticals` selects the rear "       \
-      "joints of three verticals at intervals of 120 degrees")                                                         \
-    X(section, held_at_deg, HF_FIELD_DOUBLE, 0, 360, "180", "deg", NULL,                                               \
-      "Sets the angle of the held bay or vertical about the centre of the aperture, from x towards y. If three "       \
-      "verticals are held, this key sets the angle of the first vertical. hifdm selects the bay or vertical nearest "  \
-      "to the angle `held_at_deg`. For an offset reflector, the joints at 180 degrees are on the side of the axis of " \
-      "the paraboloid")
+    X(section, height_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "", "m", NULL)                                           \
+    X(section, cells_per_bay, HF_FIELD_INT, 1, 6000, "1", "", NULL)                                                    \
+    X(section, bracing, HF_FIELD_WORD, 0, 0, "single", "", hf_diagonals_word)                                          \
+    X(section, held, HF_FIELD_WORD, 0, 0, "bay", "", HF_WORDS("bay", "vertical", "three_verticals"))                   \
+    X(section, held_at_deg, HF_FIELD_DOUBLE, 0, 360, "180", "deg", NULL)
 
 #define HF_TUBE_KEYS(X, section, diameter)                                                                             \
-    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL,                                    \
-      "Sets the outer diameter of the tubes")                                                                          \
-    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL, "Sets the wall thickness of the tubes")
+    X(section, diameter_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 10, diameter, "m", NULL)                                    \
+    X(section, wall_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 5, "0.001", "m", NULL)
 
 /* Makes the truss of basic sub-rings over the modules of the net. The front nodes of the truss are the module corners
  * on the cylinder. At the outer edge of a net with edge ties, the front nodes of the truss are the supports of these

@@ -88,7 +88,7 @@ static bool print_keys(const char *word, FILE *f)
             const char *tail = all >= length ? path + (all - length) : "";
             if (!length || strcmp(tail, word) != 0 || (tail > path && tail[-1] != '.')) continue;
             hf_print_line(f, "%s (key of the case file%s%s)", path, *field->unit ? ", " : "", field->unit);
-            hf_help_wrap(field->help, 4, 0, f);
+            hf_help_wrap(hf_config_help(path, NULL), 4, 0, f);
             n++;
         }
     }

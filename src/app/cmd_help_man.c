@@ -73,13 +73,13 @@ static void man_command(const hf_command *c, FILE *f)
     fputs(".RE\n.fi\n", f);
 }
 
-static void man_field(const hf_field *field, const char *path, FILE *f)
+static void man_field(const hf_field *field, const char *path, const char *help, FILE *f)
 {
     const char *value = field->default_value;
     fputs(".TP\n", f);
     put_line("", path, *field->unit ? ", " : "", field->unit, f);
-    put_roff(field->help, f);
-    fputs(".\n", f);
+    put_roff(help, f);
+    fputc('\n', f);
     for (int i = 0; field->words && field->words[i]; i++)
         put_line(i ? "| " : "", field->words[i], field->words[i + 1] ? "" : ".", NULL, f);
     if (!value)
@@ -93,11 +93,11 @@ static void man_list(const hf_list *list, FILE *f)
     char path[128];
     fputs(".TP\n", f);
     put_line("", list->path, ", rows", NULL, f);
-    put_roff(list->help, f);
-    fprintf(f, ".\nN, below, is the number of a row, from 0 to %d.\n", list->max_row - 1);
+    put_roff(hf_config_help(list->path, NULL), f);
+    fprintf(f, "\nN, below, is the number of a row, from 0 to %d.\n", list->max_row - 1);
     for (int i = 0; i < list->n_field; i++) {
         snprintf(path, sizeof path, "%s.N.%s", list->path, list->field[i].path);
-        man_field(&list->field[i], path, f);
+        man_field(&list->field[i], path, hf_config_help(list->path, list->field[i].path), f);
     }
 }
 
@@ -124,7 +124,7 @@ void hf_help_man(const hf_command *const *commands, FILE *f)
         man_command(commands[i], f);
     fputs(".SH CASE FILE\nYAML. Lengths are in metres, forces in newtons; the unit is the last part of a name.\n", f);
     for (int i = 0; i < hf_n_field; i++)
-        man_field(&hf_field_table[i], hf_field_table[i].path, f);
+        man_field(&hf_field_table[i], hf_field_table[i].path, hf_config_help(hf_field_table[i].path, NULL), f);
     for (int i = 0; i < hf_n_list; i++)
         man_list(&hf_list_table[i], f);
     fputs(".SH EXIT STATUS\n", f);

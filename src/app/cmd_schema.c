@@ -55,7 +55,7 @@ static bool is_inside(const char *path, const char *section)
 static void print_field(const hf_field *field, FILE *f)
 {
     int indent = 2 * depth_of(field->path);
-    fprintf(f, "%*s# %s.\n%*s# ", indent, "", field->help, indent, "");
+    fprintf(f, "%*s# %s\n%*s# ", indent, "", hf_config_help(field->path, NULL), indent, "");
     print_range(field, f);
     if (*field->unit) fprintf(f, "; %s", field->unit);
     if (!field->default_value)
@@ -71,8 +71,8 @@ static void print_field(const hf_field *field, FILE *f)
 static void print_list(const hf_list *list, FILE *f)
 {
     int indent = 2 * depth_of(list->path);
-    fprintf(f, "%*s# %s.\n%*s# up to %d rows {key: value, ...} of these keys:\n", indent, "", list->help, indent, "",
-            list->max_row);
+    fprintf(f, "%*s# %s\n%*s# up to %d rows {key: value, ...} of these keys:\n", indent, "",
+            hf_config_help(list->path, NULL), indent, "", list->max_row);
     for (const hf_field *field = list->field; field < list->field + list->n_field; field++) {
         fprintf(f, "%*s#   %s: ", indent, "", field->path);
         print_range(field, f);
@@ -83,7 +83,7 @@ static void print_list(const hf_list *list, FILE *f)
             fprintf(f, "; may be left out");
         else
             fprintf(f, "; default %s", field->default_value);
-        fprintf(f, ".\n%*s#     %s.\n", indent, "", field->help);
+        fprintf(f, ".\n%*s#     %s\n", indent, "", hf_config_help(list->path, field->path));
     }
     fprintf(f, "%*s%s: []\n", indent, "", last_word(list->path));
 }
@@ -99,7 +99,8 @@ static hf_status command_schema(const hf_options *o, FILE *f, hf_messages *messa
         if (!strchr(field[i].path, '.')) print_field(&field[i], f);
     for (int s = 0; s < hf_n_section; s++) {
         int indent = 2 * depth_of(section[s].path);
-        fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", section[s].help, indent, "", last_word(section[s].path));
+        fprintf(f, "\n%*s# %s\n%*s%s:\n", indent, "", hf_config_help(section[s].path, NULL), indent, "",
+                last_word(section[s].path));
         for (int i = 0; i < hf_n_field; i++)
             if (is_inside(field[i].path, section[s].path)) print_field(&field[i], f);
         for (int i = 0; i < hf_n_list; i++)

@@ -74,6 +74,8 @@ static void write_axis(merger *m, hid_t group, int i_axis)
 {
     const hf_study_axis *axis = &m->study->axis[i_axis];
     const hf_field *f = axis->key.field;
+    const hf_list *list = axis->key.list;
+    const char *help = list ? hf_config_help(list->path, f->path) : hf_config_help(f->path, NULL);
     hf_field_type type = f->type == HF_FIELD_AMOUNT && has_numbers(axis) ? HF_FIELD_DOUBLE : f->type;
     const hf_hdf5_kind *kind = type == HF_FIELD_DOUBLE                             ? HF_KIND_REAL
                                : type == HF_FIELD_UINT64                           ? HF_KIND_UINT64
@@ -89,9 +91,9 @@ static void write_axis(merger *m, hid_t group, int i_axis)
             set_number(m->room, i, kind, text);
     }
     if (!kind)
-        write_texts(m, group, axis->key.path, f->help);
+        write_texts(m, group, axis->key.path, help);
     else
-        write_column(m, group, axis->key.path, kind, type == HF_FIELD_INT_PAIR ? 2 : 0, f->unit, f->help);
+        write_column(m, group, axis->key.path, kind, type == HF_FIELD_INT_PAIR ? 2 : 0, f->unit, help);
 }
 
 /* ---- outputs ---- */

@@ -13,8 +13,8 @@ def ask(*words):
 
 
 def plain(text):
-    """Returns the text in Markdown that shows it unchanged."""
-    return re.sub(r"([\\`*_<\[\]|#])", r"\\\1", text)
+    """Returns the text in Markdown that shows it unchanged. What is in backticks is code."""
+    return re.sub(r"(`[^`]*`)|([\\`*_<\[\]|#])", lambda m: m[1] or "\\" + m[2], text)
 
 
 def schema_rows(comments):

@@ -1,6 +1,10 @@
 /* Case file -> settings: defaults, overrides, both kinds of scene, and every fault at its file:line:col. */
 #include "nets.h"
 
+#include "case/config_key.h"
+
+#include <fnmatch.h>
+
 #define CYLINDER                                                                                                       \
     "scene:\n"                                                                                                         \
     "  parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 5, modules: [2, 3], cells_per_module: [4, "  \
@@ -180,10 +184,55 @@ END_TEST
 
 /* ---- what is refused: test_config_faults.c has the exact messages; here nothing may crash or be accepted ---- */
 
+extern const char hf_config_help_text[];
+
+/* Counts a path in n_path of the only entry of keys.md that describes it. */
+static void check_help(const char *path, int n_path[])
+{
+    int n = 0, i = 0;
+    for (const char *pattern = hf_config_help_text, *help; *pattern; pattern = help + strlen(help) + 1, i++) {
+        help = pattern + strlen(pattern) + 1;
+        ck_assert_msg(strlen(help) > 10 && help[strlen(help) - 1] == '.', "%s", pattern);
+        if (fnmatch(pattern, path, 0) != 0) continue;
+        ck_assert_str_eq(hf_config_help(path, NULL), help);
+        n_path[i]++;
+        n++;
+    }
+    ck_assert_msg(n == 1, "%d entries describe %s", n, path);
+}
+
+START_TEST(each_path_has_a_description)
+{
+    static int n_path[512];
+    char path[HF_KEY_SIZE];
+    for (int i = 0; i < hf_n_section; i++)
+        check_help(hf_section_table[i].path, n_path);
+    for (int i = 0; i < hf_n_field; i++)
+        check_help(hf_field_table[i].path, n_path);
+    for (int i = 0; i < hf_n_list; i++) {
+        const hf_list *list = &hf_list_table[i];
+        check_help(list->path, n_path);
+        for (int k = 0; k < list->n_field; k++) {
+            snprintf(path, sizeof path, "%s.%s", list->path, list->field[k].path);
+            check_help(path, n_path);
+            ck_assert_str_eq(hf_config_help(path, NULL), hf_config_help(list->path, list->field[k].path));
+        }
+    }
+    int i = 0;
+    for (const char *pattern = hf_config_help_text; *pattern; i++) {
+        ck_assert_msg(n_path[i] > 0, "nothing has the path %s", pattern);
+        pattern += strlen(pattern) + 1;
+        pattern += strlen(pattern) + 1;
+    }
+    ck_assert_str_eq(hf_config_help("form.stopp", NULL), "");
+    ck_assert_str_eq(hf_config_help("optimize.limits", "weight"), "");
+}
+END_TEST
+
 static void check_field(const hf_field *field)
 {
     ck_assert_msg(field->type == HF_FIELD_WORD ? !!field->words : field->min < field->max, "%s", field->path);
-    ck_assert_msg(*field->help && field->unit, "%s", field->path);
+    ck_assert_msg(field->unit != NULL, "%s", field->path);
 }
 
 /* A default in the table must itself be a valid value: all are parsed by the same code, so a bad one shows in every
@@ -287,6 +336,7 @@ Suite *suite_unit_config(void)
     tcase_add_test(tests, anchors_work);
     tcase_add_test(tests, both_kinds_of_scene_are_made);
     tcase_add_test(tests, table_is_sound);
+    tcase_add_test(tests, each_path_has_a_description);
     tcase_add_test(tests, a_difference_in_any_key_is_named);
     return suite;
 }
