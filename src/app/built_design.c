@@ -62,7 +62,8 @@ static hf_status compare(const hf_options *o, const hf_problem *p, const hf_expo
     HF_TRY(status);
     if (!what) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: this result belongs to another net than %s; they differ in %s. Use the case of this result",
+                    "%s: this result belongs to another net than the case %s. The difference is in %s. Use the case "
+                    "file of this result",
                     o->result, o->file, what);
 }
 
@@ -119,10 +120,11 @@ hf_status hf_built_design_check(const hf_options *o, const hf_case *c, hf_messag
     if (o->result || is_form || (!o->stage && !c->has_optimize)) return HF_OK;
     if (o->stage)
         return hf_error(messages, HF_BAD_USAGE,
-                        "--stage needs --result FILE with a result of this case, except --stage form");
+                        "the --stage option needs --result FILE with a result of this case. Only --stage form works "
+                        "without a result");
     return hf_error(messages, HF_BAD_USAGE,
-                    "%s: has a section optimize. Use --result FILE with the result from which the net was cut (hifdm "
-                    "run writes it), or --stage form if the net was cut from the form-finding",
+                    "%s: the case has an `optimize` section, so --result FILE must give the result from which the "
+                    "cables were cut. If the cables were cut to the lengths after form-finding, use --stage form",
                     o->file);
 }
 

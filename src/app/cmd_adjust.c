@@ -410,10 +410,12 @@ static hf_status check_outputs(const job *j, const hf_options *o, hf_messages *m
 {
     if (o->report && !o->result)
         return hf_error(messages, HF_BAD_USAGE,
-                        "--report %s needs --result FILE with the result of this case (hifdm run %s writes it)",
+                        "the option --report %s needs --result FILE with the result of this case. To compute this "
+                        "result, use 'hifdm run %s'",
                         o->report, o->file);
     if (o->output && o->report && !strcmp(o->output, o->report))
-        return hf_error(messages, HF_BAD_USAGE, "-o and --report both name %s: use different names", o->output);
+        return hf_error(messages, HF_BAD_USAGE,
+                        "the options -o and --report both name the file %s. Use different names", o->output);
     HF_TRY(hf_output_check(o, &j->problem, o->measured, o->output, messages));
     HF_TRY(hf_file_out_spare(o->output, "the table of adjustments", o->report ? o->report : "", messages));
     return hf_output_check(o, &j->problem, o->measured, o->report, messages);
@@ -440,7 +442,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
  * case or table, HF_EXISTS, HF_IO, HF_NO_MEMORY, or the status of a shape that failed. */
 static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *messages)
 {
-    if (!o->measured) return hf_error(messages, HF_BAD_USAGE, "'hifdm adjust' needs --measured FILE");
+    if (!o->measured) return hf_error(messages, HF_BAD_USAGE, "'hifdm adjust' needs the option --measured FILE");
     static job j; /* too large for a small stack */
     memset(&j, 0, sizeof j);
     hf_status status = execute(&j, o, messages);
@@ -455,12 +457,13 @@ static hf_status command_adjust(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_adjust = {
     .name = "adjust",
     .argument = "CASE",
-    .help = "find the turnbuckles to adjust from measured positions of the as-built net",
-    .about = "hifdm estimates the errors of the cut lengths from the measured positions of nodes and the section "
-             "tolerance. Then it selects the fewest adjustments of the cables in adjust.set that reduce the figure. "
-             "Each adjustment is a multiple of adjust.step_m within adjust.range_m. The table lists the adjustments "
-             "in the order in which you make them. Each row gives the tension of the cable before and after the "
-             "adjustment, and the figure predicted after it.",
+    .help = "compute turnbuckle adjustments from measured node positions of the as-built net",
+    .about = "hifdm estimates the errors of the cutting lengths from the measured node positions and the `tolerance` "
+             "section of the case. From these errors, hifdm selects the fewest adjustments that reduce the value of "
+             "adjust.figure. hifdm considers only cables in the set adjust.set. Each adjustment is a multiple of the "
+             "step adjust.step_m within the range adjust.range_m. Make the adjustments in the order of the table. Each "
+             "row of the table gives the cable tension before and after the adjustment. The row also gives the "
+             "predicted value of adjust.figure after the adjustment.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
                 "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
                 "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=target_positions\n"

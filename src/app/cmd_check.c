@@ -484,8 +484,8 @@ static hf_status check_points(const hf_check_request *request, const hf_study *s
     print_left(s, count, check->at_most_s, request->threads, f);
     if (status != HF_OK || t.n_fault == 0) return status;
     return hf_error(messages, HF_POINTS_FAILED,
-                    "%s: sweep: %d of the %d points that were tried cannot be run. A sweep counts them as failed and "
-                    "runs the others",
+                    "%s: sweep: %d of the %d tested points cannot be run. A sweep counts points that cannot be run as "
+                    "failed, and runs all other points",
                     s->path, t.n_fault, t.n_tried);
 }
 
@@ -496,7 +496,8 @@ static hf_status check_study(const hf_check_request *request, hf_check *check, F
 {
     static hf_study study;
     if (request->n_set)
-        return hf_error(messages, HF_BAD_USAGE, "%s: --set does not work with a study; change its base case or an axis",
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: the --set option does not work with a study. Change the base case or an axis of the study",
                         request->path);
     hf_status status = hf_study_read(request->path, &study, messages);
     if (status == HF_OK) status = check_points(request, &study, check, f, messages);
@@ -522,11 +523,11 @@ static hf_status command_check(const hf_options *o, FILE *file, hf_messages *mes
 const hf_command hf_cmd_check = {
     .name = "check",
     .argument = "CASE",
-    .help = "check a case or a study; print what will run, what is skipped, sizes, memory and time",
-    .about = "hifdm check runs the form-finding but not the optimisation, and it writes no files. It reports all "
-             "errors of the case together, each with file, line and column.\nFor a study, hifdm check prints the "
-             "axes, the number of points, the first and the last point, and the points that are already done. It "
-             "builds the nets of all points and checks the first point like a case.",
+    .help = "check a case or a study, and print its stages, problem sizes, memory and run time",
+    .about = "hifdm check runs the form-finding but not the optimisation. The command writes no files. hifdm check "
+             "reports all errors of the case at once, each with its file, line and column.\nFor a study, hifdm check "
+             "prints the axes, the number of points, the first and last points, and the finished points. hifdm check "
+             "builds the net of every point of the study. hifdm check fully checks only the first point of the study.",
     .examples = "hifdm check case.yaml --threads 64\n"
                 "hifdm check study.yaml",
     .uses_threads = true,

@@ -22,10 +22,10 @@ static hf_status command_diff(const hf_options *o, FILE *file, hf_messages *mess
 const hf_command hf_cmd_diff = {
     .name = "diff",
     .argument = "A B",
-    .help = "compare the data sets of two result files, without times and provenance",
-    .about = "Two runs of the same case with the same seed give bit-identical results, with any number of threads and "
-             "with or without interruptions. If the files differ, hifdm diff prints the first differences and exits "
-             "with status 1.",
+    .help = "compare the datasets of two result files, ignoring times and provenance",
+    .about = "Two runs of the same case with the same seed give bit-identical results. Neither the number of threads "
+             "nor interruptions change the results. If the files differ, hifdm diff prints the first differences and "
+             "exits with status 1.",
     .examples = "hifdm diff monday.h5 tuesday.h5\n"
                 "hifdm diff mine.h5 yours.h5 --rtol 1e-9",
     .reads_results = true,

@@ -84,11 +84,10 @@ static hf_status name_columns(job *j, hf_messages *messages)
     for (int k = 0; k < m->n_variable; k++) {
         for (int i = 0; m->variable_cable[k] < 0 && i < m->n_variable; i++)
             if (m->variable_cable[i] >= 0 && !strcmp(j->name[i], j->name[k]))
-                return hf_error(
-                    messages, HF_BAD_CASE,
-                    "optimize.variables: the name of cable '%s' is also the name of a design variable of a support; "
-                    "rename the cable",
-                    j->name[i]);
+                return hf_error(messages, HF_BAD_CASE,
+                                "optimize.variables: cable '%s' has the same name as a design variable of a support. "
+                                "Rename the cable",
+                                j->name[i]);
     }
     return HF_OK;
 }
@@ -333,9 +332,10 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
 {
     HF_TRY(hf_problem_load(o->file, NULL, o->set, o->n_set, NULL, &j->problem, messages));
     if (j->problem.model.n_variable == 0)
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: no boundary cable has a free end, so there are no design variables; add optimize.variables", o->file);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: no boundary cable has a free end, so the case has no design variables. Add the list "
+                        "optimize.variables to the case",
+                        o->file);
     HF_TRY(hf_output_check(o, &j->problem, o->designs, path, messages));
     HF_TRY(hf_output_check(o, &j->problem, o->designs, o->jacobian, messages));
     HF_TRY(name_columns(j, messages));
@@ -358,15 +358,18 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
 static hf_status check_options(const hf_options *o, hf_messages *messages)
 {
     if (!o->designs == !o->template_path)
-        return hf_error(messages, HF_BAD_USAGE, "'hifdm evaluate' needs either --designs FILE or --template FILE");
-    if (o->template_path && o->output) return hf_error(messages, HF_BAD_USAGE, "-o cannot be combined with --template");
-    if (o->template_path && o->jacobian) return hf_error(messages, HF_BAD_USAGE, "--jacobian needs --designs FILE");
+        return hf_error(messages, HF_BAD_USAGE,
+                        "'hifdm evaluate' needs either the option --designs FILE or the option --template FILE");
+    if (o->template_path && o->output)
+        return hf_error(messages, HF_BAD_USAGE, "the options -o and --template cannot be combined");
+    if (o->template_path && o->jacobian)
+        return hf_error(messages, HF_BAD_USAGE, "the option --jacobian needs --designs FILE");
     if (o->jacobian && o->output && hf_path_will_be_same(o->jacobian, o->output))
-        return hf_error(messages, HF_BAD_USAGE, "--jacobian and -o must name different files");
+        return hf_error(messages, HF_BAD_USAGE, "the options --jacobian and -o must name different files");
     if (o->jacobian && o->output) HF_TRY(hf_file_out_spare(o->output, "the table of results", o->jacobian, messages));
     if (o->designs && o->json && !o->output)
         return hf_error(messages, HF_BAD_USAGE,
-                        "--json needs -o FILE here, because otherwise the table goes to standard output");
+                        "the option --json needs -o FILE, because JSON and the table cannot share the standard output");
     return HF_OK;
 }
 
@@ -398,11 +401,12 @@ const hf_command hf_cmd_evaluate = {
     .name = "evaluate",
     .argument = "CASE",
     .help = "evaluate a table of designs and write a table of their results",
-    .about =
-        "Use this command with your own optimiser. Each row of the table is a design, with one value for each design "
-        "variable of the case. The design variables are those of optimize.variables, or the pretension in N of each "
-        "boundary cable with a free end. Each row of the results has psi, the residual, the tension ratios and the "
-        "objectives of one design. The results are bit-identical to those of hifdm run. The command uses all cores.",
+    .about = "Use this command to evaluate the designs of your own optimiser. Each row of the input table is a design "
+             "with one value for each design variable of the case. The list optimize.variables defines the design "
+             "variables. Without the list optimize.variables, the design variables are the pretensions in N of all "
+             "boundary cables with a free end. Each row of the output table contains psi, the residual, the tension "
+             "ratios and the objectives of one design. The results are bit-identical to the results of hifdm run. The "
+             "command uses all cores.",
     .examples = "hifdm evaluate case.yaml --template base.csv\n"
                 "hifdm evaluate case.yaml --designs designs.csv -o results.csv\n"
                 "hifdm evaluate case.yaml --designs designs.csv -o results.csv --jacobian slopes.csv",

@@ -143,7 +143,7 @@ static hf_status explain_each(const char *all, FILE *f, hf_messages *messages)
         rest += n;
     }
     if (!*unknown) return HF_OK;
-    return hf_error(messages, HF_BAD_USAGE, "there is no entry '%.64s'; 'hifdm explain' lists all entries",
+    return hf_error(messages, HF_BAD_USAGE, "the glossary has no entry '%.64s'. 'hifdm explain' lists all entries",
                     is_any ? unknown : all);
 }
 
@@ -164,16 +164,17 @@ static hf_status command_explain(const hf_options *o, FILE *file, hf_messages *m
     const char *near = hf_text_nearest(all, names, n_name);
     bool is_likely = near && (strlen(word) > SHORT || (hf_word_letter(near[0]) == hf_word_letter(word[0]) &&
                                                        hf_word_letter(near[1]) == hf_word_letter(word[1])));
-    if (is_likely) return hf_error(messages, HF_BAD_USAGE, "there is no entry '%.64s'; did you mean '%s'?", all, near);
+    if (is_likely)
+        return hf_error(messages, HF_BAD_USAGE, "the glossary has no entry '%.64s'; did you mean '%s'?", all, near);
     return explain_each(all, file, messages);
 }
 
 const hf_command hf_cmd_explain = {
     .name = "explain",
     .argument = "[WORD...]",
-    .help = "explain a status, a warning, a figure or a term, and say what to do",
-    .about = "WORD is a word of the summary, of --json or of a message, a term of several words, or a complete "
-             "warning in quotes. Without WORD, hifdm explain lists all entries.",
+    .help = "explain a status, a warning, a quantity or a term, and suggest an action",
+    .about = "WORD is a term of the summary, of the JSON output or of a message, or a complete warning in quotes. "
+             "Without the argument WORD, hifdm explain lists all entries of the glossary.",
     .examples = "hifdm explain straight_chain\n"
                 "hifdm explain position_bound_m\n"
                 "hifdm explain \"warning: slack in the form-finding shape, 1: c7\"",

@@ -35,15 +35,18 @@ static hf_status check_request(const hf_options *o, hf_export_extent *extent, bo
     }
     list_exporters(list, sizeof list);
     if (!*has_one_shape && !every_shape) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
-    if (o->stage && o->load_case) return hf_error(messages, HF_BAD_USAGE, "--stage and --load-case cannot be combined");
+    if (o->stage && o->load_case)
+        return hf_error(messages, HF_BAD_USAGE, "the options --stage and --load-case cannot be combined");
     for (int i = 0; i < HF_N_EXPORTER; i++)
         if (o->load_case && o->export_to[i] && !hf_exporter_table[i]->takes_case)
-            return hf_error(messages, HF_BAD_USAGE, "--load-case cannot be combined with %s, %s",
+            return hf_error(messages, HF_BAD_USAGE,
+                            "the option --load-case cannot be combined with %s, because that option %s",
                             hf_exporter_table[i]->option,
-                            hf_exporter_table[i]->takes_stage ? "which is of the design that all load cases are made of"
-                                                              : "which writes every shape");
+                            hf_exporter_table[i]->takes_stage ? "exports the design that all load cases share"
+                                                              : "exports all shapes");
     if (o->stage && !*has_one_shape)
-        return hf_error(messages, HF_BAD_USAGE, "--stage cannot be combined with %s alone, which writes every shape",
+        return hf_error(messages, HF_BAD_USAGE,
+                        "the option --stage cannot be combined with %s alone, because that option exports all shapes",
                         every_shape->option);
     return HF_OK;
 }
@@ -89,8 +92,8 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_export = {
     .name = "export",
     .argument = "FILE",
-    .help = "write a result as CSV files, as VTK files for ParaView, or as a cut list",
-    .about = "Numbers have 17 significant digits, so a program that reads them gets exactly the stored values.",
+    .help = "export a result as CSV files, as VTK files for ParaView, or as a cut list",
+    .about = "hifdm export writes numbers with 17 significant digits, so a program reads exactly the stored values.",
     .examples = "hifdm export chen2022.h5 --csv best\n"
                 "hifdm export chen2022.h5 --csv found --stage form\n"
                 "hifdm export night.h5 --csv cold --load-case cold\n"

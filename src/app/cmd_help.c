@@ -94,8 +94,8 @@ static hf_status command_help(const hf_options *o, FILE *file, hf_messages *mess
 const hf_command hf_cmd_help = {
     .name = "help",
     .argument = "[COMMAND]",
-    .help = "explain a command, with its options and examples",
-    .about = "hifdm COMMAND --help is the same as hifdm help COMMAND.",
+    .help = "describe a command, its options and examples of its use",
+    .about = "The commands `hifdm COMMAND --help` and `hifdm help COMMAND` print the same text.",
     .examples = "hifdm help run\n"
                 "hifdm help --man | man -l -\n"
                 "eval \"$(hifdm help --bash)\"",

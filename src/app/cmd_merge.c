@@ -23,9 +23,9 @@ static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *mes
 const hf_command hf_cmd_merge = {
     .name = "merge",
     .argument = "STUDY",
-    .help = "write an HDF5 file with a table of all points and links to their result files",
-    .about = "hifdm merge works at any time after the start of the sweep. Points without a result have the status "
-             "not_evaluated.",
+    .help = "write an HDF5 file with a table of all points of a sweep and links to their result files",
+    .about = "You can run hifdm merge at any time after the sweep has started. Points without a result have the status "
+             "not_evaluated in the table.",
     .examples = "hifdm merge study.yaml -o study.h5\n"
                 "hifdm report study.h5",
     .run = command_merge,

@@ -163,8 +163,7 @@ static hf_status add_file(hf_file_out_set *files, const char *path, const new_te
     bool is_there;
     HF_TRY(hf_file_out_look(path, &is_there, messages));
     if (is_there)
-        return hf_error(messages, HF_EXISTS, "%s exists and is not replaced; use another name, or remove the file",
-                        path);
+        return hf_error(messages, HF_EXISTS, "the file %s already exists. Use another name, or remove the file", path);
     return hf_file_out_set_write(files, path, write_text, text, messages);
 }
 
@@ -174,8 +173,8 @@ static hf_status check_name(const char *word, const char *name, size_t n, hf_mes
     static const char may_have[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
     if (n > 0 && n <= 100 && strspn(name, may_have) >= n && *name != '-' && *name != '.') return HF_OK;
     return hf_error(messages, HF_BAD_USAGE,
-                    "'%s': the name of a new case has letters, digits, '_', '-' and '.', and does not begin with '-' "
-                    "or '.'",
+                    "'%s': the name of a new case may contain only letters, digits, '_', '-' and '.'. The name must "
+                    "not begin with '-' or '.'",
                     word);
 }
 
@@ -207,10 +206,10 @@ static hf_status command_new(const hf_options *o, FILE *file, hf_messages *messa
 const hf_command hf_cmd_new = {
     .name = "new",
     .argument = "NAME",
-    .help = "write NAME.yaml, a commented case that runs without changes",
-    .about = "Without options, the case is a round reflector with two nets, which ties connect. With --import, hifdm "
-             "new also writes the tables NAME_nodes.csv and NAME_cables.csv of a small net. hifdm new never replaces "
-             "a file.",
+    .help = "write the commented case file NAME.yaml, ready to run",
+    .about = "Without options, the new case is a round reflector with two nets and ties between them. With the "
+             "--import option, hifdm new also writes the tables NAME_nodes.csv and NAME_cables.csv of a small net. "
+             "hifdm new never replaces an existing file.",
     .examples = "hifdm new dish\n"
                 "hifdm new mine --import",
     .run = command_new,

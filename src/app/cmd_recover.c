@@ -15,8 +15,9 @@ static hf_status command_recover(const hf_options *o, FILE *file, hf_messages *m
 const hf_command hf_cmd_recover = {
     .name = "recover",
     .argument = "FILE",
-    .help = "add the generations of FILE.journal to an unfinished result; `run` does this automatically",
-    .about = "Use this command if a run was killed and you want its result so far, without continuing the run.",
+    .help = "add the generations of the journal FILE.journal to an unfinished result",
+    .about = "If a run was killed, use this command to complete its result file without resuming the run. If you "
+             "resume the run, hifdm run adds the generations automatically.",
     .examples = "hifdm recover night.h5",
     .reads_results = true,
     .run = command_recover,

@@ -12,9 +12,9 @@ static hf_status command_report(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_report = {
     .name = "report",
     .argument = "FILE [OTHER]",
-    .help = "write a result as one HTML page: net, histories, tensions, summary",
-    .about = "The page is one file that any browser opens without a network. With a second result, the page compares "
-             "the two results: the differences between their cases, their figures and the tensions of each cable.",
+    .help = "write an HTML page with the net, histories, tensions and summary of a result",
+    .about = "The HTML page is a single file that any browser can open offline. With a second result, the page "
+             "compares the cases, summaries and cable tensions of the two results.",
     .examples = "hifdm report chen2022.h5 -o chen2022.html\n"
                 "hifdm report monday.h5 tuesday.h5 -o both.html",
     .reads_results = true,

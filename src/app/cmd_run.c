@@ -11,9 +11,11 @@
 
 static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 {
-    if (o->task >= 0 && o->tasks == 0) return hf_error(messages, HF_BAD_USAGE, "'--task' also needs '--tasks'");
+    if (o->task >= 0 && o->tasks == 0)
+        return hf_error(messages, HF_BAD_USAGE, "the option '--task' also needs '--tasks'");
     if (o->tasks > 0 && o->task >= o->tasks)
-        return hf_error(messages, HF_BAD_USAGE, "--task %d: the %d tasks are numbered 0 to %d", o->task, o->tasks,
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--task %d is out of range, because the %d tasks are numbered from 0 to %d", o->task, o->tasks,
                         o->tasks - 1);
     return HF_OK;
 }
@@ -49,12 +51,13 @@ const hf_command hf_cmd_run = {
     .name = "run",
     .argument = "CASE",
     .help = "run a case and store its results in one HDF5 file",
-    .about = "The case file determines the stages. Form-finding always runs. If the case has a section optimize, the "
-             "genetic algorithm and Levenberg-Marquardt follow. If it has a section tolerance, hifdm also computes "
-             "samples of the as-built net. The run stores every generation. To resume a run that was killed or "
-             "interrupted, run the same command again. hifdm keeps a finished result unless you give --restart.\nIf "
-             "the case has a front (optimize.front), --point makes one point of the front the result, without a "
-             "search. The result then has the shape, the cut list and the as-built net of this point.",
+    .about =
+        "The case file determines the stages of the run. Form-finding always runs. If the case has an `optimize` "
+        "section, the search and the refinement follow the form-finding. If the case has a `tolerance` section, hifdm "
+        "also computes samples of the as-built net. The run stores every generation. To resume a run that was killed "
+        "or interrupted, run the same command again. hifdm keeps a finished result unless you use the --restart "
+        "option.\nFor a case with the list optimize.front, the --point option uses a point of an existing Pareto front "
+        "instead of a search. The result contains the shape, the cut list and the as-built net of the selected point.",
     .examples = "hifdm run configs/chen2022.yaml\n"
                 "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5\n"
                 "hifdm run case.yaml --point front.h5:7 -o point7.h5",
@@ -65,12 +68,12 @@ const hf_command hf_cmd_run = {
 const hf_command hf_cmd_tolerance = {
     .name = "tolerance",
     .argument = "CASE",
-    .help = "compute samples of the as-built net with the errors in section tolerance",
-    .about =
-        "This command works like hifdm run, for a case with a section tolerance. The shape of the result gives the "
-        "cut lengths of the cables. hifdm solves the net again with errors of lengths, stiffness, supports and "
-        "temperature. The tasks of a job array share the samples, and each task stores its own beside FILE. The same "
-        "command without --task combines these samples. The result is bit-identical to that of one run.",
+    .help = "compute samples of the as-built net with the errors in the `tolerance` section",
+    .about = "hifdm tolerance works like hifdm run, but the case must have a `tolerance` section. hifdm derives the "
+             "cutting lengths of the cables from the shape of the design. For each sample, hifdm solves the net again "
+             "with errors of lengths, stiffness, supports and temperature. In a job array, each task computes a share "
+             "of the samples and stores this share beside FILE. To combine the samples of all tasks, run the same "
+             "command without the --task option. The combined result is bit-identical to the result of a single run.",
     .examples = "hifdm tolerance case.yaml -o case.h5\n"
                 "hifdm tolerance case.yaml -o case.h5 --task 3 --tasks 16\n"
                 "hifdm tolerance case.yaml -o case.h5 --tasks 16",

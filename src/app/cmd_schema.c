@@ -116,8 +116,8 @@ static hf_status command_schema(const hf_options *o, FILE *f, hf_messages *messa
 
 const hf_command hf_cmd_schema = {
     .name = "schema",
-    .help = "print every key of a case file: type, range, default, meaning",
-    .about = "The output is a case file with comments that has every key at its default.",
+    .help = "print all keys of the case file with their types, ranges, defaults and meanings",
+    .about = "The output is a commented case file in which every key has its default value.",
     .examples = "hifdm schema | less",
     .run = command_schema,
 };

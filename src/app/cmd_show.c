@@ -16,8 +16,8 @@ static hf_status refuse_case(const char *file, hf_messages *messages)
     if (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0) return HF_OK;
     bool is_study = hf_study_is(file);
     return hf_error(messages, HF_IO,
-                    "%s: is not a result file (HDF5) but a %s. `hifdm check %s` prints what a run would do; `hifdm %s "
-                    "%s` writes a result that `hifdm show` prints",
+                    "%s: this file is not a result file (HDF5) but a %s. To check this file, use `hifdm check %s`. To "
+                    "compute a result for `hifdm show`, use `hifdm %s %s`",
                     file, is_study ? "study" : "case", file, is_study ? "merge" : "run", file);
 }
 
@@ -53,11 +53,11 @@ const hf_command hf_cmd_show = {
     .name = "show",
     .argument = "FILE",
     .help = "print the summary of a result file, or the table of a merged study",
-    .about =
-        "hifdm show prints the summary of a run: first the result, then a row for each stage, and the warnings last. "
-        "--verbose adds certificates, the tension ratios of sets, the objectives, the surface of every stage, and "
-        "times.\nFor a merged study, hifdm show prints the axes, the values that all points share, and a table of the "
-        "points. The best point is marked. With --verbose it prints all points of a large study.",
+    .about = "The summary of a run begins with the result, continues with a row for each stage, and ends with the "
+             "warnings. The --verbose option adds error bounds, the tension ratios of cable sets, the objectives, the "
+             "surface errors of every stage, and times.\nFor a merged study, hifdm show prints the axes, the values "
+             "that all points share, and a table of the points. The best point is marked. With the --verbose option, "
+             "hifdm show prints all points of a large study.",
     .examples = "hifdm show chen2022.h5\n"
                 "hifdm show chen2022.h5 --verbose\n"
                 "hifdm show chen2022.h5 --json\n"

@@ -78,8 +78,8 @@ static hf_status command_status(const hf_options *o, FILE *file, hf_messages *me
 const hf_command hf_cmd_status = {
     .name = "status",
     .argument = "STUDY",
-    .help = "count the points that are done, running, failed and missing, and give the reasons",
-    .about = "The command works at any time, on any machine that can read the folder of the results.",
+    .help = "count the done, running, failed and missing points of a sweep, and print the reasons for failures",
+    .about = "You can run hifdm status at any time, on any machine that can read the results folder of the sweep.",
     .examples = "hifdm status study.yaml",
     .run = command_status,
 };

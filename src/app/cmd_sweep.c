@@ -38,10 +38,13 @@ static hf_status choose_task(const hf_options *o, int *task, int *tasks, hf_mess
     *task = o->task;
     *tasks = o->tasks;
     if (o->tasks && o->task < 0) {
-        if (!in_array) return hf_error(messages, HF_BAD_USAGE, "--tasks needs --task, or Slurm's SLURM_ARRAY_TASK_ID");
+        if (!in_array)
+            return hf_error(
+                messages, HF_BAD_USAGE,
+                "the option --tasks needs the option --task, or the environment variable SLURM_ARRAY_TASK_ID");
         *task = id;
     } else if (!o->tasks && o->task >= 0) {
-        return hf_error(messages, HF_BAD_USAGE, "--task needs --tasks");
+        return hf_error(messages, HF_BAD_USAGE, "the option --task needs --tasks");
     } else if (!o->tasks) {
         *task = 0;
         *tasks = 1;
@@ -51,13 +54,14 @@ static hf_status choose_task(const hf_options *o, int *task, int *tasks, hf_mess
         environment_number("SLURM_ARRAY_TASK_STEP", &step);
         if (step < 1 || high - low != (count - 1) * step || id < low || (id - low) % step)
             return hf_error(messages, HF_BAD_USAGE,
-                            "the Slurm array has gaps; use --tasks N to give the number of tasks that share the "
-                            "points");
+                            "the task numbers of the Slurm array have gaps. Use the option --tasks N, where N is the "
+                            "number of tasks that share the points");
         *task = (id - low) / step;
         *tasks = count;
     }
     if (*task >= *tasks)
-        return hf_error(messages, HF_BAD_USAGE, "task %d of %d: the tasks are numbered from 0", *task, *tasks);
+        return hf_error(messages, HF_BAD_USAGE, "task %d of %d does not exist, because the tasks are numbered from 0",
+                        *task, *tasks);
     return HF_OK;
 }
 
@@ -123,10 +127,10 @@ static hf_status command_sweep(const hf_options *o, FILE *file, hf_messages *mes
 const hf_command hf_cmd_sweep = {
     .name = "sweep",
     .argument = "STUDY",
-    .help = "run the missing points of a sweep on all cores; a failed point does not stop the others",
-    .about = "A study has a base case and axes over its keys. hifdm sweep does not run finished points again, so the "
-             "same command continues a sweep that was stopped. In a Slurm array, each task runs its share of the "
-             "points.",
+    .help = "run the missing points of a sweep on all cores",
+    .about = "A study consists of a base case and axes that vary keys of this case. A failed point does not stop the "
+             "other points of the sweep. hifdm sweep does not run finished points again. To resume a sweep that was "
+             "stopped, run the same command again. In a Slurm array, each task runs its share of the points.",
     .examples = "hifdm sweep study.yaml\n"
                 "hifdm sweep study.yaml --task 0 --tasks 8\n"
                 "hifdm sweep study.yaml --retry failed",

@@ -55,7 +55,7 @@ static hf_status read_only_choice(const reading *r)
 {
     int *choice = place_of(r);
     if (*choice && *choice != r->option->number)
-        return hf_error(r->messages, HF_BAD_USAGE, "%s cannot be combined with the export given before it",
+        return hf_error(r->messages, HF_BAD_USAGE, "the option %s cannot be combined with the export option before it",
                         r->option->name);
     return read_choice(r);
 }
@@ -261,7 +261,7 @@ static hf_status unknown(const char *kind, const char *word, const char *const *
 {
     const char *near = hf_text_nearest(word, names, n_name);
     if (near) return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'; did you mean '%s'?", kind, word, near);
-    return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'; 'hifdm help%s' lists them", kind, word, where);
+    return hf_error(messages, HF_BAD_USAGE, "unknown %s '%s'. 'hifdm help%s' lists the valid names", kind, word, where);
 }
 
 static bool needs_argument(const hf_command *command)
@@ -314,7 +314,7 @@ static hf_status find_option(const char *word, const hf_command *command, hf_opt
     }
     if (is_elsewhere)
         return hf_error(messages, HF_BAD_USAGE,
-                        "'%s' is not an option of this command; 'hifdm help %s' lists its options", word,
+                        "'%s' is not an option of this command. 'hifdm help %s' lists the options of the command", word,
                         command->name);
     char where[32];
     snprintf(where, sizeof where, " %s", command->name);
@@ -330,7 +330,7 @@ static hf_status read_file(const char *word, const hf_command *command, hf_optio
     else if (command->argument && strstr(command->argument, "...")) /* such a command reads them from argv */
         return HF_OK;
     else
-        return hf_error(messages, HF_BAD_USAGE, "'%s' is one argument too many for 'hifdm %s'", word, command->name);
+        return hf_error(messages, HF_BAD_USAGE, "'%s' is an unexpected argument of 'hifdm %s'", word, command->name);
     return HF_OK;
 }
 
@@ -353,11 +353,13 @@ static hf_status read_words(int argc, char *const *argv, const hf_command *comma
         if (option.argument) {
             bool is_joined = equals && argv[i][1] == '-';
             if (!is_joined && i + 1 == argc)
-                return hf_error(messages, HF_BAD_USAGE, "'%s' must be followed by %s", argv[i], option.argument);
+                return hf_error(messages, HF_BAD_USAGE, "the option '%s' must be followed by %s", argv[i],
+                                option.argument);
             value = is_joined ? equals + 1 : argv[++i];
             if (!*value && option.read == read_text) /* a file or a folder */
-                return hf_error(messages, HF_BAD_USAGE, "'%s' must be followed by %s, not by an empty word",
-                                option.name, option.argument);
+                return hf_error(messages, HF_BAD_USAGE,
+                                "the option '%s' must be followed by %s, not by an empty string", option.name,
+                                option.argument);
         } else if (equals) {
             return hf_error(messages, HF_BAD_USAGE, "'%s' has no value", option.name);
         }
@@ -371,7 +373,7 @@ hf_status hf_options_parse(int argc, char *const *argv, const hf_command *const 
 {
     const hf_command *command;
     *options = (hf_options){.commands = commands, .argc = argc, .argv = argv, .task = -1};
-    if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "there is no command; 'hifdm help' lists the commands");
+    if (argc < 2) return hf_error(messages, HF_BAD_USAGE, "the command is missing. 'hifdm help' lists all commands");
     HF_TRY(find_command(argv[1], commands, &command, messages));
     options->command = command;
     options->set = calloc((size_t)argc, sizeof *options->set);
@@ -389,7 +391,7 @@ hf_status hf_options_parse(int argc, char *const *argv, const hf_command *const 
     if (!options->threads && slurm && hf_text_uint64(slurm, &cpus) && cpus >= 1 && cpus <= THREADS_MAX)
         options->threads = (int)cpus;
     if (needs_argument(command) && !options->file)
-        return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a %s", command->name, command->argument);
+        return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs the argument %s", command->name, command->argument);
     if (takes_two(command) && !strchr(command->argument, '[') && !options->second)
         return hf_error(messages, HF_BAD_USAGE, "'hifdm %s' needs a second file", command->name);
     return HF_OK;

@@ -47,10 +47,10 @@ bool hf_reader_watch(const hf_options *options, int *exit_status, hf_messages *m
     if (other && !strcmp(file, other)) other = options->file;
     hf_status status = HF_IO;
     if (end.is_sent)
-        hf_error(messages, status, "%s: the process that read it was ended by %s", file, words);
+        hf_error(messages, status, "%s: the process that read this file was ended by %s", file, words);
     else
-        hf_error(messages, status, "%s: is damaged: the process that read it was ended by %s%s%s", file, words,
-                 other ? ", beside " : "", other ? other : "");
+        hf_error(messages, status, "%s: this file is damaged. The process that read the file was ended by %s%s%s", file,
+                 words, other ? ", beside " : "", other ? other : "");
     *exit_status = hf_status_exit_code(status);
     return true;
 }

@@ -11,8 +11,8 @@ hf_status hf_study_files_name(const char *given, const char *study, const char *
                               hf_messages *messages)
 {
     if (!hf_path_choose(given, study, ending, name, HF_PATH_SIZE))
-        return hf_error(messages, HF_IO, "%s: the path is too long; at most %d bytes are possible here",
-                        given ? given : study, HF_PATH_SIZE - 1);
+        return hf_error(messages, HF_IO, "%s: the path is longer than the maximum of %d bytes", given ? given : study,
+                        HF_PATH_SIZE - 1);
     return *name ? HF_OK : hf_error(messages, HF_IO, "%s: the name of a file or folder is empty", study);
 }
 
@@ -24,7 +24,9 @@ hf_status hf_study_files_read(const hf_options *o, bool demand_folder, char fold
     HF_TRY(hf_study_files_name(o->folder, o->file, ".d", folder, messages));
     HF_TRY(hf_study_read(o->file, study, messages));
     if (demand_folder && access(folder, F_OK) != 0)
-        return hf_error(messages, HF_IO, "%s: %s; 'hifdm sweep' creates it, and --dir names another folder", folder,
-                        errno == ENOENT ? "there is no such folder of results" : strerror(errno));
+        return hf_error(
+            messages, HF_IO,
+            "%s: %s. Run 'hifdm sweep' to create the folder, or use the --dir option to select another folder", folder,
+            errno == ENOENT ? "there is no such folder of results" : strerror(errno));
     return hf_ledger_read(folder, study, points, messages);
 }

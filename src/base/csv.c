@@ -36,10 +36,12 @@ void hf_csv_fault(hf_csv *t, int line, const char *id, const char *what, const c
 hf_status hf_csv_close_faults(hf_csv *t)
 {
     if (t->n_comma > 1)
-        hf_error(t->messages, HF_BAD_CASE, "%s: %d more numbers have decimal commas", t->path, t->n_comma - 1);
+        hf_error(t->messages, HF_BAD_CASE, "%s: %d more numbers have decimal commas instead of decimal points", t->path,
+                 t->n_comma - 1);
     t->n_comma = 0;
     if (t->n_fault > HF_FAULT_MAX)
-        hf_error(t->messages, HF_BAD_CASE, "%s: there are %d more faults", t->path, t->n_fault - HF_FAULT_MAX);
+        hf_error(t->messages, HF_BAD_CASE, "%s: hifdm found %d more faults in this file", t->path,
+                 t->n_fault - HF_FAULT_MAX);
     return t->n_fault ? HF_BAD_CASE : HF_OK;
 }
 
@@ -231,8 +233,8 @@ hf_status hf_csv_read(const char *path, int column_max, hf_csv *t, hf_messages *
     *t = (hf_csv){.path = path, .messages = messages};
     HF_TRY(hf_text_read_file(path, HF_BAD_CASE, &t->text, &length, messages));
     if (is_utf16(t->text, length))
-        return hf_error(messages, HF_BAD_CASE, "%s: UTF-16 text; save the file as CSV UTF-8", path);
-    if (strlen(t->text) != length) return hf_error(messages, HF_BAD_CASE, "%s: not a text file", path);
+        return hf_error(messages, HF_BAD_CASE, "%s: this file contains UTF-16 text. Save the file as CSV UTF-8", path);
+    if (strlen(t->text) != length) return hf_error(messages, HF_BAD_CASE, "%s: this file is not a text file", path);
     t->header = malloc(2 * (size_t)column_max * sizeof *t->header); /* the second half holds the fields of one line */
     if (!t->header) return hf_csv_no_memory(t);
     char *rest = t->text, *line, **field = t->header + column_max;

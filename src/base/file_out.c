@@ -38,14 +38,15 @@ static bool is_trusted(const struct stat *link)
 static hf_status refuse_link(const char *path, const char *what, hf_messages *messages)
 {
     return hf_error(messages, HF_IO,
-                    "%s: is a symbolic link of another user; name the %s to which it leads, or choose another name",
+                    "%s: this symbolic link belongs to another user. Give the name of the %s to which the link points, "
+                    "or choose another name",
                     path, what);
 }
 
 /* Reports that a path cannot be examined. errno must be that of the failed call. */
 static hf_status cannot_look(const char *path, hf_messages *messages)
 {
-    return hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
+    return hf_error(messages, HF_IO, "%s: cannot get the status of this file: %s", path, strerror(errno));
 }
 
 /* Returns HF_IO if a folder on the way to `path` is a link made by somebody else in a folder to which everybody may
@@ -79,7 +80,7 @@ static hf_status follow(char target[HF_FILE_OUT_SIZE], const char *what, hf_mess
         ssize_t n = readlink(target, to, sizeof to - 1);
         if (i == LINKS_MAX) errno = ELOOP;
         if (n < 0 || i == LINKS_MAX)
-            return hf_error(messages, HF_IO, "%s: cannot follow this link: %s", target, strerror(errno));
+            return hf_error(messages, HF_IO, "%s: cannot follow this symbolic link: %s", target, strerror(errno));
         to[n] = '\0';
         if (!hf_path_beside(target, to, next, sizeof next)) return tell_too_long(target, messages);
         strcpy(target, next);
@@ -117,8 +118,8 @@ hf_status hf_file_out_spare(const char *input, const char *what, const char *out
 {
     int is_same = input && *input ? hf_path_compare(input, output) : 0;
     if (is_same == 0) return HF_OK;
-    if (is_same > 0) return hf_error(messages, HF_EXISTS, "%s: is %s; choose another name", output, what);
-    return hf_error(messages, HF_IO, "%s: cannot tell whether it is %s: %s", output, what, strerror(errno));
+    if (is_same > 0) return hf_error(messages, HF_EXISTS, "%s: this file is %s. Choose another name", output, what);
+    return hf_error(messages, HF_IO, "%s: cannot determine whether this file is %s: %s", output, what, strerror(errno));
 }
 
 hf_status hf_file_out_look(const char *path, bool *is_there, hf_messages *messages)
@@ -203,10 +204,10 @@ static void remove_temporary(hf_file_out *f, hf_messages *messages)
     if (unlink(f->temporary) == 0 || errno == ENOENT) return;
     f->is_left = true;
     if (messages)
-        hf_warning(messages,
-                   "%s: cannot remove the temporary file %s: %s; the next command that writes %s removes it, or remove "
-                   "it yourself",
-                   f->path, f->temporary, strerror(errno), hf_path_name(f->path));
+        hf_warning(
+            messages,
+            "%s: cannot remove the temporary file %s: %s. The next command that writes %s removes this temporary file",
+            f->path, f->temporary, strerror(errno), hf_path_name(f->path));
 }
 
 static int close_with(int file, int why)
@@ -346,7 +347,7 @@ hf_status hf_file_out_begin(const char *path, hf_file_out *f, hf_messages *messa
     int seen = hf_path_look(f->path, &info);
     if (seen < 0) return cannot_look(f->path, messages);
     if (seen > 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) /* rename(2) never replaces a folder */
-        return hf_error(messages, HF_IO, "%s: is not a regular file; choose another name", path);
+        return hf_error(messages, HF_IO, "%s: this is not a regular file. Choose another name", path);
     hf_file_out_clean(f->path);
     return hf_file_out_make(f->path, f) == 0 ? HF_OK : fail(path, messages);
 }
@@ -407,7 +408,7 @@ hf_status hf_file_out_set_begin(hf_file_out_set *set, const char *path, hf_file_
     *file = f;
     for (int i = 0; i + 1 < set->n; i++)
         if (!strcmp(set->file[i].path, f->path))
-            return hf_error(messages, HF_EXISTS, "%s: two files would have this name", path);
+            return hf_error(messages, HF_EXISTS, "%s: two output files would have this name", path);
     return HF_OK;
 }
 

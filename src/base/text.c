@@ -28,7 +28,7 @@ static hf_status refuse_kind(const char *path, hf_status code, hf_messages *mess
                        : S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode) ? "a device"
                        : S_ISSOCK(info.st_mode)                         ? "a socket"
                                                                         : "no file of the disk";
-    return hf_error(messages, code, "%s: is %s; name a regular file", path, kind);
+    return hf_error(messages, code, "%s: this is %s. Give the name of a regular file", path, kind);
 }
 
 /* Reads to the end of the file. A file may be longer than its reported size; files in /proc are. Sets *buffer to NULL
@@ -65,7 +65,7 @@ hf_status hf_text_read_file(const char *path, hf_status code, char **text, size_
     if (!buffer && !is_long) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (failed || is_long) free(buffer);
     if (failed) return hf_error(messages, hf_file_io_fault(why, code), "%s: cannot read: %s", path, strerror(why));
-    if (is_long) return hf_error(messages, code, "%s: is longer than %d MB", path, FILE_MAX >> 20);
+    if (is_long) return hf_error(messages, code, "%s: this file is larger than %d MB", path, FILE_MAX >> 20);
     buffer[*length] = '\0';
     *text = buffer;
     return HF_OK;

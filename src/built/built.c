@@ -27,7 +27,7 @@ static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_wo
     if (n == 0) return status;
     return hf_error(
         messages, HF_BAD_CASE,
-        "%s: %d cables are in compression, such as '%s' with %.3g N, but the as-built net cannot have struts", where, n,
+        "%s: the as-built net cannot have struts, but %d cables are in compression, such as '%s' with %.3g N", where, n,
         s->cable_id[first], w->tension_N[first]);
 }
 

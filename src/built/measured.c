@@ -67,7 +67,8 @@ static hf_status count_nodes(const char *path, const hf_model *m, const hf_measu
     for (int row = 0; row < m->n_free + m->n_attachment; row++)
         n += measured->line[row] > 0;
     if (n >= NODES_MIN) return HF_OK;
-    return hf_error(messages, HF_BAD_CASE, "%s: has positions of %d free node%s, but at least %d are needed", path, n,
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: the file has positions of %d free node%s, but hifdm needs at least %d positions", path, n,
                     n == 1 ? "" : "s", NODES_MIN);
 }
 
@@ -241,18 +242,18 @@ static hf_status explain_far(const char *path, const hf_built *b, double all_m, 
     const char *unit = guess_unit(sqrt(f.spread[1] / f.spread[0]));
     describe_motion(&f, measured->n_node, frame);
     if (unit)
-        return hf_error(messages, HF_BAD_CASE, "%s: the positions seem to be in %s; x_m, y_m and z_m must be in m",
-                        path, unit);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the positions seem to be in %s, but the columns x_m, y_m and z_m must be in m", path,
+                        unit);
     if (f.rest < EXPLAINED * f.square)
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: the nodes are %.4g mm RMS from their positions in the design, but section tolerance allows "
-            "for %.3g mm; %s. Transform the positions into the frame of the case",
-            path, rms_m * 1e3, all_m * 1e3, frame);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the nodes are %.4g mm RMS from their design positions, but the `tolerance` section allows "
+                        "for only %.3g mm: %s. Transform the positions into the coordinate frame of the case",
+                        path, rms_m * 1e3, all_m * 1e3, frame);
     return hf_error(
         messages, HF_BAD_CASE,
-        "%s: the nodes are %.4g mm RMS from their positions in the design, but section tolerance allows for "
-        "%.3g mm: this is another net, or its errors are larger",
+        "%s: the nodes are %.4g mm RMS from their design positions, but the `tolerance` section allows for only %.3g "
+        "mm. The positions belong to another net, or the errors of the net are larger than in this section",
         path, rms_m * 1e3, all_m * 1e3);
 }
 
@@ -266,11 +267,10 @@ static void name_far(const char *path, const hf_built *b, const double *expected
         if (!measured->line[row]) continue;
         double far_m = distance_of(b, measured, row), allowed = allowed_m(expected_m, all_m, measured, row);
         if (far_m <= FAR * allowed || n++ >= HF_FAULT_MAX) continue;
-        hf_error(
-            messages, HF_BAD_CASE,
-            "%s:%d: node '%s' is %.4g mm from its position in the design, but section tolerance and sigma_m allow for "
-            "%.3g mm: check the id and the numbers; correct the line or remove it",
-            path, measured->line[row], b->scene.node_id[i], far_m * 1e3, allowed * 1e3);
+        hf_error(messages, HF_BAD_CASE,
+                 "%s:%d: node '%s' is %.4g mm from its design position, but sigma_m and the `tolerance` section allow "
+                 "for only %.3g mm. Check the id and the coordinates, and correct or remove the line",
+                 path, measured->line[row], b->scene.node_id[i], far_m * 1e3, allowed * 1e3);
     }
 }
 
@@ -295,16 +295,15 @@ hf_status hf_measured_check(const char *path, const hf_built *b, const double *e
     }
     double tells_m = sqrt(allowed_square / measured->n_node - all_m * all_m);
     if (tells_m > VAGUE * all_m)
-        hf_warning(
-            messages,
-            "%s: a sigma_m of about %.3g m makes these positions almost useless, because section tolerance allows for "
-            "only %.3g m",
-            path, tells_m / sqrt(3), all_m);
+        hf_warning(messages,
+                   "%s: a sigma_m of about %.3g m makes these positions almost useless, because the given tolerances "
+                   "displace the nodes by only %.3g m",
+                   path, tells_m / sqrt(3), all_m);
     rigid_fit f = fit_motion(b, measured);
     if (f.square > DOUBTFUL * DOUBTFUL * allowed_square && f.rest < EXPLAINED * f.square) {
         char frame[FRAME_SIZE];
         describe_motion(&f, measured->n_node, frame);
-        hf_warning(messages, "%s: %s: is this the frame of the case?", path, frame);
+        hf_warning(messages, "%s: %s. Is this the coordinate frame of the case?", path, frame);
     }
     return HF_OK;
 }

@@ -496,13 +496,15 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
 {
     const char *path = settings->path;
     if (settings->text_length > 4 && !memcmp(settings->text, "\x89HDF", 4))
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: is an HDF5 file, not a case. If it is a result, use hifdm show, report or export", path);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: this file is an HDF5 file, not a case file. For a result file, use hifdm show, report or export",
+            path);
     if (settings->text_length > CASE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "%s: is not a case file, because it is longer than %d kB", path,
+        return hf_error(messages, HF_BAD_CASE, "%s: this file is larger than %d kB, so it is not a case file", path,
                         CASE_MAX >> 10);
     if (hf_text_too_deep(settings->text))
-        return hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: more than %d nested brackets", path,
+        return hf_error(messages, HF_BAD_CASE, "%s:%d:1: the YAML text has more than %d nested brackets", path,
                         hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
     loader l = {.c = settings, .faults = {.messages = messages, .path = path, .origin = path}};
     l.faults.where_given = settings->where_given = calloc((size_t)hf_key_n_location(), HF_CONFIG_WHERE_SIZE);
@@ -523,7 +525,8 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     if (l.no_memory) sealed = HF_NO_MEMORY;
     if (sealed != HF_OK) return hf_error(messages, sealed, "%s: out of memory", path);
     if (l.faults.n > HF_FAULT_MAX_CASE)
-        hf_error(messages, HF_BAD_CASE, "%s: there are %d more faults", path, l.faults.n - HF_FAULT_MAX_CASE);
+        hf_error(messages, HF_BAD_CASE, "%s: hifdm found %d more faults in this file", path,
+                 l.faults.n - HF_FAULT_MAX_CASE);
     return l.faults.failed ? HF_BAD_CASE : HF_OK;
 }
 

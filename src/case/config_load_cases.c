@@ -85,16 +85,17 @@ static hf_status heat_cables(const maker *q, int row)
     }
     if (n == 0) return HF_BAD_CASE;
     if (n_wild)
-        hf_error(q->messages, HF_BAD_CASE,
-                 "%s: the lengths of %d cables would change by more than the fraction %g, such as '%s' by %.3g at "
-                 "%.6g K. Check this temperature and expansion_per_K",
-                 hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_wild, LARGEST_STRAIN,
-                 scene->cable_id[wild], q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild],
-                 load_case->rise_K[wild]);
+        hf_error(
+            q->messages, HF_BAD_CASE,
+            "%s: %d cables would change their lengths by more than the fraction %g. For example, the length of cable "
+            "'%s' would change by the fraction %.3g at %.6g K. Check this temperature and the value expansion_per_K",
+            hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_wild, LARGEST_STRAIN,
+            scene->cable_id[wild], q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild],
+            load_case->rise_K[wild]);
     if (n_unknown == 0) return n_wild ? HF_BAD_CASE : HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
-                    "%s: the expansion of %d cables is not known, such as '%s'. Add expansion_per_K of their sets to "
-                    "`cables`; use 0 for cables that do not expand",
+                    "%s: %d cables have no thermal expansion coefficient, such as cable '%s'. In the list `cables`, "
+                    "give expansion_per_K for these cables (0 for cables that do not expand)",
                     hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_unknown,
                     scene->cable_id[unknown]);
 }
@@ -109,14 +110,16 @@ hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_par
         n_expanding += hf_truss_is_of(t, e, part) && t->expansion_per_K[e] != 0;
     }
     if (n == 0)
-        return hf_error(messages, HF_BAD_CASE, "%s: the truss has no members of unit %s", where, hf_part_word[part]);
+        return hf_error(messages, HF_BAD_CASE, "%s: the truss has no members of the unit '%s'", where,
+                        hf_part_word[part]);
     if (!c->has_truss_import && !hf_config_location(c, "truss.expansion_per_K", location, sizeof location))
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: the expansion of the truss is not known. Add truss.expansion_per_K; use 0 for a truss "
-                        "that does not expand%s",
+                        "%s: the truss has no thermal expansion coefficient. Add the key truss.expansion_per_K (0 for "
+                        "a truss that does not expand)%s",
                         where, other);
     if (n_expanding == 0 && c->has_truss_import)
-        hf_warning(messages, "%s: no member of the truss expands, because its table has no expansion_per_K above 0",
+        hf_warning(messages,
+                   "%s: no member of the truss expands, because no member in the table has an expansion_per_K above 0",
                    where);
     return HF_OK;
 }
@@ -163,11 +166,11 @@ static hf_status weigh(const maker *q, int row)
     for (int e = 0; e < q->scene->n_cable; e++)
         if (isnan(q->load_cases->material.mass_kg_per_m[e]) && n_unknown++ == 0) unknown = e;
     if (n_unknown == 0) return HF_OK;
-    return hf_error(
-        q->messages, HF_BAD_CASE,
-        "%s: the mass of %d cables is not known, such as '%s'. Add mass_kg_per_m of their sets to `cables`; use 0 for "
-        "cables without mass",
-        hf_config_place(q->c, where, "load_cases.%d.gravity_m_per_s2", row), n_unknown, q->scene->cable_id[unknown]);
+    return hf_error(q->messages, HF_BAD_CASE,
+                    "%s: %d cables have no mass per length, such as cable '%s'. In the list `cables`, give "
+                    "mass_kg_per_m for these cables (0 for cables without mass)",
+                    hf_config_place(q->c, where, "load_cases.%d.gravity_m_per_s2", row), n_unknown,
+                    q->scene->cable_id[unknown]);
 }
 
 /* ---- forces and displacements ---- */
@@ -226,9 +229,10 @@ static hf_status read_table(hf_csv *t, const hf_scene *s, hf_load_case *load_cas
     for (int k = ROW_FORCE; k < N_ROW_COLUMN; k++)
         n_known += where[k] >= 0;
     if (n_known == 0)
-        return hf_error(t->messages, HF_BAD_CASE,
-                        "%s:%d: has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it gives no loads",
-                        t->path, t->header_line);
+        return hf_error(
+            t->messages, HF_BAD_CASE,
+            "%s:%d: the table gives no loads, because it has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m",
+            t->path, t->header_line);
     HF_TRY(hf_csv_index(t, where[ROW_ID]));
     HF_TRY(hf_csv_know(t, s->n_node, s->node_id));
     for (int r = 0; r < t->n_row; r++)
@@ -257,8 +261,8 @@ static hf_status check_EA(const maker *q)
     if (n == 0) return HF_OK;
     return hf_error(
         q->messages, HF_BAD_CASE,
-        "%s: %d cables have no EA, such as '%s', but load cases of the as-built net need it. Add scene.EA_inner_N and "
-        "scene.EA_boundary_N, or the column EA_N of an imported net",
+        "%s: %d cables have no stiffness EA, such as '%s', but load cases of the as-built net need this stiffness. Add "
+        "the keys scene.EA_inner_N and scene.EA_boundary_N, or add the column EA_N to the table of an imported net",
         hf_config_place(q->c, where, "load_cases.0.name"), n, s->cable_id[first]);
 }
 

@@ -33,9 +33,9 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
         memcpy(location, other, sizeof location);
     if (scene->node_line) snprintf(line, sizeof line, ", line %d", scene->node_line[fit->farthest]);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: the inner nodes are not on the %s with f = %g m: the RMS of their heights above it is %.4g "
-                    "mm, and the farthest is '%s'%s, %.4g mm (the RMS above the parabolic_cylinder z = x^2/(4f) is "
-                    "%.4g mm, and above the paraboloid z = (x^2 + y^2)/(4f) it is %.4g mm); %s",
+                    "%s: the inner nodes are not on the %s with f = %g m. The RMS height error of the inner nodes is "
+                    "%.4g mm, and node '%s'%s has the maximum error of %.4g mm. The RMS height error is %.4g mm for "
+                    "the parabolic_cylinder z = x^2/(4f), and %.4g mm for the paraboloid z = (x^2 + y^2)/(4f); %s",
                     location, hf_surface_kind_word[surface->kind], surface->focal_length_m, fit->rms_m * 1e3,
                     scene->node_id[fit->farthest], line, fit->max_m * 1e3, cylinder->rms_m * 1e3,
                     paraboloid->rms_m * 1e3, advice);
@@ -62,7 +62,8 @@ static void doubt_focal_length(const hf_case *c, const hf_scene *scene, hf_messa
     double aperture_m = of.kind == HF_SURFACE_PARABOLIC_CYLINDER ? x_m : fmax(x_m, y_m);
     if (!(of.focal_length_m > FOCAL_MOST * aperture_m)) return;
     hf_warning(messages,
-               "%s: %g m is %.0f times the aperture of %g m; reflectors have less than %g times. Is this value in m?",
+               "%s: the focal length of %g m is %.0f times the aperture of %g m, but the usual maximum for reflectors "
+               "is %g times. Is this value in m?",
                hf_config_place(c, location, "%s", key), of.focal_length_m, of.focal_length_m / aperture_m, aperture_m,
                FOCAL_MOST);
 }

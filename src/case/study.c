@@ -122,8 +122,8 @@ hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
         const hf_study_axis *axis = &s->axis[a];
         if (s->is_zip && axis->n_value != s->axis[0].n_value)
             return hf_error(messages, HF_BAD_CASE,
-                            "%s:%d:%d: sweep.%s: has %d values, but %s has %d; combine: zip needs the same number of "
-                            "values on all axes",
+                            "%s:%d:%d: sweep.%s: this axis has %d values, but the axis %s has %d values. The setting "
+                            "`combine: zip` needs the same number of values on all axes",
                             s->path, axis->line, axis->column, axis->key.path, axis->n_value, s->axis[0].key.path,
                             s->axis[0].n_value);
         if (s->is_zip)
@@ -132,8 +132,8 @@ hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
             n *= axis->n_value;
     }
     if (n > HF_STUDY_POINT_MAX)
-        return hf_error(messages, HF_BAD_CASE, "%s: sweep: has %.10g points, but a study has at most %d", s->path, n,
-                        HF_STUDY_POINT_MAX);
+        return hf_error(messages, HF_BAD_CASE, "%s: sweep: the study has %.10g points, but the maximum is %d points",
+                        s->path, n, HF_STUDY_POINT_MAX);
     s->n_point = (int)n;
     return HF_OK;
 }
@@ -217,7 +217,7 @@ static hf_status sort_names(hf_study *s, hf_messages *messages)
         char text[512];
         if (s->by_id[i].number != s->by_id[i - 1].number) continue;
         hf_study_point_text(s, s->by_id[i].point, text, sizeof text);
-        return hf_error(messages, HF_BAD_CASE, "%s: sweep: two points are the same: %s", s->path, text);
+        return hf_error(messages, HF_BAD_CASE, "%s: sweep: two points of the study are identical: %s", s->path, text);
     }
     return HF_OK;
 }

@@ -578,11 +578,11 @@ hf_status hf_study_read(const char *path, hf_study *study, hf_messages *messages
     r.faults = (hf_config_faults){.messages = messages, .origin = study->path};
     hf_status status = HF_OK;
     if (length > STUDY_MAX)
-        status = hf_error(messages, HF_BAD_CASE, "%s: is not a study, because it is longer than %d MB", path,
+        status = hf_error(messages, HF_BAD_CASE, "%s: this file is larger than %d MB, so it is not a study", path,
                           STUDY_MAX >> 20);
     else if (hf_text_too_deep(text))
-        status =
-            hf_error(messages, HF_BAD_CASE, "%s:%d:1: YAML: too many nested brackets", path, hf_text_too_deep(text));
+        status = hf_error(messages, HF_BAD_CASE, "%s:%d:1: the YAML text has too many nested brackets", path,
+                          hf_text_too_deep(text));
     else
         parse(&r, text, length);
     free(text);

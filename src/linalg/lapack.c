@@ -159,14 +159,14 @@ static hf_status load(hf_messages *messages)
     takes_turns = is_limited();
     if (takes_turns && !has_room())
         return hf_error(messages, HF_NO_MEMORY,
-                        "LAPACK needs %d MB of address space, but the limit leaves less; raise it (ulimit -v, ulimit "
-                        "-d)",
+                        "LAPACK needs %d MB of address space, but the limit of this process allows less. Raise the "
+                        "limit (ulimit -v, ulimit -d)",
                         ROOM_MB);
     /* an OpenMP library of this process that reads the environment late must read it before it is changed */
     if (find_in(RTLD_DEFAULT, "omp_get_max_threads", &openmp.get_max_threads)) openmp.get_max_threads();
     open_library(reasons, sizeof reasons);
     if (!library)
-        return hf_error(messages, HF_NO_LAPACK, "LAPACK cannot be loaded: %s. Install it (Debian: liblapack3)",
+        return hf_error(messages, HF_NO_LAPACK, "hifdm cannot load LAPACK: %s. Install it (Debian: liblapack3)",
                         reasons);
     find_in(library, "openblas_set_num_threads", &openblas.set_num_threads);
     find_in(library, "openblas_get_config", &openblas.get_config);

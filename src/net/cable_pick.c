@@ -51,9 +51,10 @@ int hf_cable_pick_some(const hf_scene *s, const char *set, const char *where, in
     if (n == 0)
         hf_error(messages, HF_BAD_CASE, "%s: this net has no %s cables", where, set);
     else if (near)
-        hf_error(messages, HF_BAD_CASE, "%s: there is no set of cables '%s'; did you mean '%s'?", where, set, near);
+        hf_error(messages, HF_BAD_CASE, "%s: this net has no cable set '%s'; did you mean '%s'?", where, set, near);
     else
-        hf_error(messages, HF_BAD_CASE, "%s: there is no set of cables '%s'; this net has %s", where, set, sets);
+        hf_error(messages, HF_BAD_CASE, "%s: this net has no cable set '%s'. The sets of this net are %s", where, set,
+                 sets);
     return 0;
 }
 
@@ -66,8 +67,8 @@ hf_status hf_cable_demand_EA(const hf_scene *s, const char *where, const char *w
     for (int g = 0; g < 2; g++)
         if (n[g])
             hf_error(messages, HF_BAD_CASE,
-                     "%s: %d %s cables have no EA, which %s, such as '%s'. Add scene.EA_%s_N, or the column EA_N of "
-                     "an imported net%s",
+                     "%s: %d %s cables have no stiffness EA, which %s. One of these cables is '%s'. Add the key "
+                     "scene.EA_%s_N, or add the column EA_N to the table of an imported net%s",
                      where, n[g], hf_group_word[g], who_needs, s->cable_id[first[g]], hf_group_word[g], then);
     return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
 }

@@ -402,14 +402,15 @@ hf_status hf_scene_parabolic_cylinder(const hf_cylinder *cylinder, const double 
     double ny = (double)cylinder->modules[1] * cylinder->cells_per_module[1] + 1;
     bool with_middles = cylinder->pattern == HF_PATTERN_DIAGONAL, is_double = cylinder->rear_distance_m > 0;
     if ((nx * ny + (with_middles ? (nx - 1) * (ny - 1) : 0)) * (is_double ? 2 : 1) > NODE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes%s%s exceed the maximum of %d", nx, ny,
+        return hf_error(messages, HF_BAD_CASE, "scene: %.0f x %.0f nodes%s%s exceed the maximum of %d nodes", nx, ny,
                         with_middles ? " and those in the middle of cells" : "", is_double ? ", twice," : "", NODE_MAX);
     const char *key = hf_scene_parabolic_cylinder_fault(cylinder, what, sizeof what);
     if (key) return hf_error(messages, HF_BAD_CASE, "scene.parabolic_cylinder.%s: %s", key, what);
     const hf_double_net rear = rear_of(cylinder);
     if (hf_double_net_lacks_EA(&rear, EA_N))
         return hf_error(messages, HF_BAD_CASE,
-                        "scene.parabolic_cylinder.tie_law: elastic needs the stiffness of inner cables");
+                        "scene.parabolic_cylinder.tie_law: the law elastic needs the stiffness of the inner cables "
+                        "(scene.EA_inner_N)");
     grid g = {.c = cylinder, .nx = (int)nx, .ny = (int)ny};
     g.first_middle = g.nx * g.ny;
     g.first_tie = g.first_middle + (with_middles ? (g.nx - 1) * (g.ny - 1) : 0);

@@ -314,13 +314,15 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
     double rings = paraboloid->rings, n_layer = paraboloid->rear_distance_m > 0 ? 2 : 1;
     bool is_quad = paraboloid->grid == HF_GRID_QUAD; /* nodes of the square around the aperture */
     if (n_layer * (is_quad ? (2 * rings + 1) * (2 * rings + 1) : 1 + 3 * rings * (rings + 1)) > NODE_MAX)
-        return hf_error(messages, HF_BAD_CASE, "scene: the nodes of %d rings exceed the maximum of %d",
+        return hf_error(messages, HF_BAD_CASE, "scene: a net with %d rings has more nodes than the maximum of %d",
                         paraboloid->rings, NODE_MAX);
     const char *key = hf_scene_paraboloid_fault(paraboloid, what, sizeof what);
     if (key) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.%s: %s", key, what);
     const hf_double_net rear = rear_of(paraboloid);
     if (hf_double_net_lacks_EA(&rear, EA_N))
-        return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_law: elastic needs the stiffness of inner cables");
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "scene.paraboloid.tie_law: the law elastic needs the stiffness of the inner cables (scene.EA_inner_N)");
     const hf_front_families families = {N_FAMILY, family_name, rear_family, TIE};
     hf_front_net front;
     hf_status status = make_grid(paraboloid, &front);

@@ -386,8 +386,8 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
     double n_band = (double)m->n_free * (m->half_bandwidth + 1.0);
     if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of a net with struts */
         free(order);
-        return hf_error(messages, HF_NO_MEMORY, "the band matrix of %d rows, half-bandwidth %d is too large", m->n_free,
-                        m->half_bandwidth);
+        return hf_error(messages, HF_NO_MEMORY, "the band matrix with %d rows and half-bandwidth %d is too large",
+                        m->n_free, m->half_bandwidth);
     }
     m->n_band = (int)n_band;
     if (status == HF_OK) status = build(scene, form, order, m);
@@ -414,10 +414,13 @@ static hf_status check_attachments(const hf_model *m, int n, const int *node, hf
 {
     for (int i = 0; i < n; i++) {
         if (node[i] < 0 || node[i] >= m->n_node || m->row_of_node[node[i]] < m->n_free)
-            return hf_error(messages, HF_BAD_CASE, "attachment %d of the truss: node %d is not a support", i, node[i]);
+            return hf_error(messages, HF_BAD_CASE,
+                            "attachment %d of the truss belongs to node %d, but this node is not a support", i,
+                            node[i]);
         for (int j = 0; j < i; j++)
             if (node[j] == node[i])
-                return hf_error(messages, HF_BAD_CASE, "attachments %d and %d of the truss are the same node", j, i);
+                return hf_error(messages, HF_BAD_CASE, "attachments %d and %d of the truss belong to the same node", j,
+                                i);
     }
     return HF_OK;
 }

@@ -138,20 +138,20 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
         n_inner += scene->role[i] == HF_ROLE_INNER;
     }
     if (n_free == 0)
-        return hf_error(messages, HF_BAD_CASE, "scene: every node is a support, so there is no shape to find");
+        return hf_error(messages, HF_BAD_CASE, "scene: the net has no free nodes, because every node is a support");
     if (n_inner == 0)
         return hf_error(messages, HF_BAD_CASE,
-                        "scene: no node has the role 'inner', so psi would count no nodes; give inner nodes that role");
+                        "scene: no node has the role 'inner', so the surface error psi would include no nodes. Give "
+                        "the role 'inner' to the nodes on the surface");
     if (n_free == scene->n_node)
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "scene: no node has the role 'support', so nothing holds the net; give that role to the nodes that do not "
-            "move");
+        return hf_error(messages, HF_BAD_CASE,
+                        "scene: no node has the role 'support', so the net has no supports. Give the role 'support' to "
+                        "the nodes that do not move");
     check_nodes(scene, &n_fault, messages);
     if (n_fault == 0) check_cables(scene, &n_fault, messages);
     HF_TRY(check_anchored(scene, &n_fault, messages));
     if (n_fault > HF_FAULT_MAX)
-        hf_error(messages, HF_BAD_CASE, "scene: there are %d more faults", n_fault - HF_FAULT_MAX);
+        hf_error(messages, HF_BAD_CASE, "scene: hifdm found %d more faults in this net", n_fault - HF_FAULT_MAX);
     return n_fault ? HF_BAD_CASE : HF_OK;
 }
 

@@ -196,6 +196,6 @@ hf_status hf_scene_from_arrays(const hf_scene_arrays *a, const double group_EA_N
     }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "scene: out of memory for %d nodes", a->n_node);
     if (n_fault > HF_FAULT_MAX)
-        hf_error(messages, HF_BAD_CASE, "scene: there are %d more faults", n_fault - HF_FAULT_MAX);
+        hf_error(messages, HF_BAD_CASE, "scene: hifdm found %d more faults in this net", n_fault - HF_FAULT_MAX);
     return n_fault ? HF_BAD_CASE : status;
 }

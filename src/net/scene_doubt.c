@@ -78,12 +78,13 @@ static void doubt_nodes(const hf_scene *s, const scratch *t, hf_messages *messag
         k++;
     for (int i = k; i < n && i < k + SAID_MAX; i++) {
         hf_scene_location(s, false, t->from[i].node, place, sizeof place);
-        hf_warning(
-            messages,
-            "%s is %.3g m from the middle of the net, %.3g times as far as the others: are all coordinates in m?",
-            place, t->from[i].m, t->from[i].m / t->from[k - 1].m);
+        hf_warning(messages,
+                   "%s is %.3g m from the middle of the net, which is %.3g times as far as the other nodes. Are all "
+                   "coordinates in m?",
+                   place, t->from[i].m, t->from[i].m / t->from[k - 1].m);
     }
-    if (n > k + SAID_MAX) hf_warning(messages, "scene: %d more nodes are as far away", n - k - SAID_MAX);
+    if (n > k + SAID_MAX)
+        hf_warning(messages, "scene: %d more nodes are similarly far from the middle of the net", n - k - SAID_MAX);
 }
 
 /* Warns if the longest side of the box around all nodes is too long. */
@@ -98,7 +99,7 @@ static void doubt_size(const hf_scene *s, hf_messages *messages)
         }
         largest = fmax(largest, high - low);
     }
-    if (largest > LARGE_M) hf_warning(messages, "scene: the net is %.4g m across: are all lengths in m?", largest);
+    if (largest > LARGE_M) hf_warning(messages, "scene: the net is %.4g m across. Are all lengths in m?", largest);
 }
 
 /* ---- lengths ---- */
@@ -114,12 +115,13 @@ static void doubt_lengths(const hf_scene *s, hf_messages *messages)
         bool is_length = s->law[e] == HF_LAW_LENGTH || s->law[e] == HF_LAW_ELASTIC;
         if (!is_length || fabs(ratio - 1) <= LENGTH_PART || ++n_said > SAID_MAX) continue;
         hf_scene_location(s, true, e, place, sizeof place);
-        hf_warning(messages,
-                   "%s is %.4g m long by its law, %.3g times the distance between its nodes: is its length in m?",
-                   place, s->target[e], ratio);
+        hf_warning(
+            messages,
+            "%s is %.4g m long by its law, which is %.3g times the distance between its nodes. Is this length in m?",
+            place, s->target[e], ratio);
     }
     if (n_said > SAID_MAX)
-        hf_warning(messages, "scene: %d more cables have other lengths than the distances between their nodes",
+        hf_warning(messages, "scene: %d more cables have lengths that differ from the distances between their nodes",
                    n_said - SAID_MAX);
 }
 
@@ -195,9 +197,9 @@ static void doubt_plane(const hf_scene *s, hf_messages *messages)
     double rms_m = sqrt(square / n);
     if (rms_m > FLATTER_PART * extent_m)
         hf_warning(messages,
-                   "scene: all supports are %s, and no load, tie or strut holds the net away from it. The net "
-                   "collapses there with any tensions, and its inner nodes are at least %.4g mm RMS from their target "
-                   "positions. Put supports on the surface, tie the net to another net, or add loads",
+                   "scene: all supports are %s, and no load, tie or strut holds the net away from the supports. With "
+                   "any tensions, the net collapses to its supports, so the inner nodes are at least %.4g mm RMS from "
+                   "their target positions. Put supports on the surface, tie the net to another net, or add loads",
                    word[f.n_along], rms_m * 1e3);
 }
 

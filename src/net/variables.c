@@ -42,8 +42,8 @@ static bool varies_support(hf_vary vary)
 static hf_status take(maker *q, int row, int at, const char *kind, const char *id)
 {
     if (q->taken[at] >= 0)
-        return hf_error(q->messages, HF_BAD_CASE, "%s: %s '%s' is already varied by row %d", where_in(q, row, "set"),
-                        kind, id, q->taken[at]);
+        return hf_error(q->messages, HF_BAD_CASE, "%s: %s '%s' is already a design variable of row %d",
+                        where_in(q, row, "set"), kind, id, q->taken[at]);
     q->taken[at] = row;
     return HF_OK;
 }
@@ -61,11 +61,13 @@ static hf_status add_cable(maker *q, int row, int e)
     const char *id = q->scene->cable_id[e];
     if (m->end_row[2 * e] >= m->n_free && m->end_row[2 * e + 1] >= m->n_free) return HF_OK;
     if (s->vary == HF_VARY_UNSTRESSED_LENGTH && !hf_law_has((hf_law)m->law[e], HF_LAW_NEEDS_EA))
-        return hf_error(q->messages, HF_BAD_CASE,
-                        "%s: cable '%s' of set %s has law %s: only cables of law elastic have an unstressed length",
-                        where_in(q, row, "vary"), id, s->set, hf_law_word[m->law[e]]);
+        return hf_error(
+            q->messages, HF_BAD_CASE,
+            "%s: cable '%s' of set %s has the law %s, but only cables with the law elastic have an unstressed length",
+            where_in(q, row, "vary"), id, s->set, hf_law_word[m->law[e]]);
     if (m->start_q_N_per_m[e] < 0)
-        return hf_error(q->messages, HF_BAD_CASE, "%s: cable '%s' of set %s is a strut, which cannot be varied",
+        return hf_error(q->messages, HF_BAD_CASE,
+                        "%s: cable '%s' of set %s is a strut, so it cannot be a design variable",
                         where_in(q, row, "set"), id, s->set);
     HF_TRY(take(q, row, e, "cable", id));
     add(q, e, (hf_variable){.vary = s->vary, .setting = row, .support_row = -1});
@@ -116,7 +118,8 @@ static hf_status add_supports(maker *q, int row, int n_picked)
 {
     const hf_model *m = q->m;
     if (q->settings->variable_row[row].vary == HF_VARY_SUPPORT_NORMAL && !(q->surface->focal_length_m > 0))
-        return hf_error(q->messages, HF_BAD_CASE, "%s: support_normal needs a target surface: add a section `surface`",
+        return hf_error(q->messages, HF_BAD_CASE,
+                        "%s: the variable support_normal needs a target surface. Add a `surface` section",
                         where_in(q, row, "vary"));
     for (int i = 0; i < 2 * n_picked; i++) {
         int support_row = m->end_row[2 * q->picked[i / 2] + i % 2];
@@ -173,7 +176,7 @@ static hf_status make_row(maker *q, int row)
     for (int i = 0; i < n_picked && !varies_support(s->vary); i++)
         HF_TRY(add_cable(q, row, q->picked[i]));
     if (q->m->n_variable == before)
-        return hf_error(q->messages, HF_BAD_CASE, "%s: set %s has %d cables, but no %s, so there is nothing to vary",
+        return hf_error(q->messages, HF_BAD_CASE, "%s: set %s has %d cables, but no %s. Choose another set",
                         where_in(q, row, "set"), s->set, n_picked,
                         varies_support(s->vary) ? "support at their ends that holds a free node"
                                                 : "cable with a free end");

@@ -42,11 +42,11 @@ hf_status hf_export_claim_file(const char *path, bool force, hf_messages *messag
     HF_TRY(hf_file_out_target(path, target, messages));
     hf_file_out_clean(target); /* temporary files of ended processes, also when the name is refused below */
     int seen = hf_path_look_at_link(target, &info);
-    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot read its status: %s", path, strerror(errno));
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot get the status of this file: %s", path, strerror(errno));
     if (seen == 0) return HF_OK;
     if (!S_ISREG(info.st_mode))
-        return hf_error(messages, HF_IO, "%s: is not a regular file; choose another name", path);
-    return force ? HF_OK : hf_error(messages, HF_EXISTS, "%s exists; use --force to replace it", path);
+        return hf_error(messages, HF_IO, "%s: this is not a regular file. Choose another name", path);
+    return force ? HF_OK : hf_error(messages, HF_EXISTS, "the file %s already exists. Use --force to replace it", path);
 }
 
 static const char *const shape_word[3] = {"form-finding", "search", "refinement"};
@@ -61,7 +61,9 @@ static hf_status find_load_case(const hf_export_request *o, hf_export_stored *st
         hf_text_append(known, sizeof known, ", ", s->load_case[k].name, "");
     if (s->n_load_case == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this run has no load cases", o->file);
     if (k == s->n_load_case)
-        return hf_error(messages, HF_BAD_USAGE, "%s: has no load case '%s'; it has %s", o->file, o->load_case, known);
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: this result has no load case '%s'. The load cases of this result are %s", o->file,
+                        o->load_case, known);
     stored->word = s->load_case[k].name;
     return HF_OK;
 }
@@ -78,12 +80,12 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_extent extent, hf
     stored->word = shape_word[stored->stage];
     if (o->load_case) HF_TRY(find_load_case(o, stored, messages));
     if (extent == HF_EXPORT_SHAPE && !o->load_case && !hf_summary_has_shape(summary, stored->stage))
-        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape; use --stage %s", o->file, stored->word,
+        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no %s shape. Use --stage %s", o->file, stored->word,
                         hf_stage_word[result]);
     if (extent >= HF_EXPORT_SCENE) HF_TRY(hf_store_read_scene(o->file, &stored->scene, messages));
     if (extent >= HF_EXPORT_SCENE && summary->surface.focal_length_m > 0 &&
         hf_facets_find(&stored->scene, &summary->surface, &stored->facets) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for its facets", o->file);
+        return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the facets of this net", o->file);
     if (extent < HF_EXPORT_SHAPE) return HF_OK;
     return o->load_case ? hf_store_read_load_case(o->file, o->load_case, &stored->shape, messages)
                         : hf_store_read_shape(o->file, stored->stage, &stored->shape, messages);
@@ -92,7 +94,9 @@ hf_status hf_export_read(const hf_export_request *o, hf_export_extent extent, hf
 bool hf_export_has_truss(const hf_export_request *o, const hf_summary *s, hf_messages *messages)
 {
     if (s->has_truss && !s->finished)
-        hf_warning(messages, "%s: is unfinished: the export has no truss, because a run stores the truss at its end",
+        hf_warning(messages,
+                   "%s: the export has no truss, because this run is unfinished and hifdm stores the truss at the end "
+                   "of a run",
                    o->file);
     return s->has_truss && s->finished;
 }
@@ -112,10 +116,10 @@ void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load
     bool is_end = !is_load_case && hf_store_result_stage(s) != HF_STAGE_FORM;
     if (!point) return;
     hf_warning(messages,
-               "%s: no point of its front is selected, so the shape is %s%s. To make point %d a result, run `hifdm "
-               "run %s --point %s:%d -o point%d.h5` with the --set options of the front",
+               "%s: no point of the Pareto front is selected, so hifdm uses %s%s. To compute the result of point %d, "
+               "run `hifdm run %s --point %s:%d -o point%d.h5` with the --set options of the front",
                file,
-               is_end ? "the end of the front with the minimum " : "that of the form-finding, before optimisation",
+               is_end ? "the end of the front with the minimum " : "the shape after form-finding, before optimisation",
                is_end ? s->objectives.name[0] : "", point, s->case_path, file, point, point);
 }
 

@@ -146,8 +146,8 @@ static hf_status export_csv(const hf_export_request *o, const hf_export_stored *
 const hf_exporter hf_exporter_csv = {
     .option = "--csv",
     .argument = "DIR",
-    .help = "write nodes.csv, cables.csv, facets.csv of nets with a surface, and truss_nodes.csv and members.csv of a "
-            "truss, into DIR",
+    .help = "write the tables nodes.csv, cables.csv, facets.csv (surface), truss_nodes.csv and members.csv (truss) "
+            "into the folder DIR",
     .reads = HF_EXPORT_SHAPE,
     .takes_stage = true,
     .takes_case = true,

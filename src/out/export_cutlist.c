@@ -149,8 +149,8 @@ static hf_status export_cutlist(const hf_export_request *o, const hf_export_stor
 const hf_exporter hf_exporter_cutlist = {
     .option = "--cutlist",
     .argument = "FILE",
-    .help = "write unstressed lengths to FILE, and beside it lengths in mm for the bench, node positions for the jig, "
-            "and totals",
+    .help = "write the unstressed lengths to FILE, and write bench lengths in mm, jig positions and totals beside this "
+            "file",
     .reads = HF_EXPORT_SHAPE,
     .takes_stage = true,
     .write = export_cutlist,

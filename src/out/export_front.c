@@ -64,8 +64,8 @@ static hf_status export_front(const hf_export_request *o, const hf_export_stored
     view v = {.summary = &stored->summary};
     static hf_export_file file = {"", write_front, ""};
     if (!v.summary->front)
-        return hf_error(messages, HF_BAD_USAGE, "%s: this run has no front, because its case has no optimize.front",
-                        o->file);
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: this run has no Pareto front, because the case has no list optimize.front", o->file);
     hf_status status = hf_store_read_front(o->file, &v.front, &v.variable, &v.variable_size, messages);
     if (status == HF_OK) status = hf_export_files(o, &file, 1, &v, messages);
     hf_print_line(o->said, "%s: %d points of the front of %d objectives in %s", o->file, v.front.n_point,
@@ -78,6 +78,6 @@ static hf_status export_front(const hf_export_request *o, const hf_export_stored
 const hf_exporter hf_exporter_front = {
     .option = "--front",
     .argument = "FILE",
-    .help = "write the front of optimize.front as a CSV file: objectives, slopes and design of each point",
+    .help = "write the objectives, slopes and design of each point of the Pareto front to a CSV file",
     .write = export_front,
 };

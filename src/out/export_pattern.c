@@ -24,13 +24,13 @@ static hf_status refuse(const char *file, const hf_summary *s, hf_stage stage, h
     double pull_ratio = s->stage[stage].surface.mesh_pull_ratio;
     char words[64];
     if (pull_ratio > HF_FACET_PULL_MOST)
-        return hf_error(
-            messages, HF_BAD_USAGE,
-            "%s: this shape has no far field: the mesh pulls on %s, and the formula of the pillow is valid only up to "
-            "N l = %g times the tension. Raise the tension of the cables, or lower surface.mesh_tension_N_per_m",
-            file, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
-    return hf_error(messages, HF_BAD_USAGE, "%s: this shape has no far field, because its case has no surface.pattern",
-                    file);
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: this shape has no far field, because the mesh pulls on %s. The pillow formula is valid "
+                        "only up to a mesh force N l of %g times the cable tension. Raise the cable tensions, or lower "
+                        "surface.mesh_tension_N_per_m",
+                        file, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
+    return hf_error(messages, HF_BAD_USAGE,
+                    "%s: this shape has no far field, because the case has no section surface.pattern", file);
 }
 
 static hf_status export_pattern(const hf_export_request *o, const hf_export_stored *stored, hf_messages *messages)
@@ -51,7 +51,7 @@ static hf_status export_pattern(const hf_export_request *o, const hf_export_stor
 const hf_exporter hf_exporter_pattern = {
     .option = "--pattern",
     .argument = "FILE",
-    .help = "write the far field of surface.pattern as a CSV file: gain by frequency, cut and angle",
+    .help = "write the gain of the far field for each frequency, cut and angle to a CSV file",
     .takes_stage = true,
     .write = export_pattern,
 };

@@ -50,13 +50,13 @@ static hf_status find_sags(view *v, const char *file, hf_arena *arena, hf_messag
     double pull_ratio, mesh_N_per_m = s->summary.surface.mesh_tension_N_per_m, *sag_m;
     if (!(mesh_N_per_m > 0)) return HF_OK;
     hf_status status = hf_facet_mesh_make_sags(mesh_N_per_m, &v->stored->facets, &shape, arena, &sag_m, &pull_ratio);
-    if (status != HF_OK) return hf_error(messages, status, "%s: out of memory for its facets", file);
+    if (status != HF_OK) return hf_error(messages, status, "%s: out of memory for the facets of this net", file);
     v->sag_m = sag_m;
     if (pull_ratio <= HF_FACET_PULL_MOST) return HF_OK;
     return hf_error(messages, HF_BAD_USAGE,
-                    "%s: the pillows of the %s shape are not known: the mesh pulls on %s, and the formula of the "
-                    "pillow is valid only up to N l = %g times the tension. Raise the tension of the cables, or lower "
-                    "surface.mesh_tension_N_per_m",
+                    "%s: the pillows of the %s shape are unknown, because the mesh pulls on %s. The pillow formula is "
+                    "valid only up to a mesh force N l of %g times the cable tension. Raise the cable tensions, or "
+                    "lower surface.mesh_tension_N_per_m",
                     file, s->word, hf_facet_mesh_pull_words(pull_ratio, words), HF_FACET_PULL_MOST);
 }
 
@@ -229,7 +229,7 @@ static hf_status write_files(const hf_export_request *o, view *v, hf_messages *m
     hf_status status = find_sags(v, o->file, &sags, messages);
     size_t n = (size_t)v->n[0] * (size_t)v->n[1];
     if (status == HF_OK && HF_ARENA_MAKE(&grid, v->z_m = hf_arena_take(&grid, n, sizeof(double))) != HF_OK)
-        status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory for its facets", o->file);
+        status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory for the facets of this net", o->file);
     if (status == HF_OK) fill_grid(v);
     if (status == HF_OK) status = hf_export_files(o, file, 3, v, messages);
     hf_arena_free(&sags);
@@ -242,7 +242,7 @@ static hf_status export_rf(const hf_export_request *o, const hf_export_stored *s
     view v = {.stored = stored};
     if (!(stored->summary.surface.focal_length_m > 0))
         return hf_error(messages, HF_BAD_USAGE,
-                        "%s: its case has no section surface, so its facets have no target surface", o->file);
+                        "%s: the facets have no target surface, because the case has no `surface` section", o->file);
     if (stored->facets.n_facet == 0) return hf_error(messages, HF_BAD_USAGE, "%s: this net has no facets", o->file);
     HF_TRY(write_files(o, &v, messages));
     hf_print_line(
@@ -257,8 +257,8 @@ static hf_status export_rf(const hf_export_request *o, const hf_export_stored *s
 const hf_exporter hf_exporter_rf = {
     .option = "--rf",
     .argument = "DIR",
-    .help = "write the facets for physical-optics programs into DIR: surface.grd, points.csv with normals and areas, "
-            "facets.stl",
+    .help = "write surface.grd, points.csv with normals and areas, and facets.stl for physical-optics programs into "
+            "the folder DIR",
     .reads = HF_EXPORT_SHAPE,
     .takes_stage = true,
     .takes_case = true,

@@ -390,7 +390,7 @@ static hf_status export_vtk(const hf_export_request *o, const hf_export_stored *
 const hf_exporter hf_exporter_vtk = {
     .option = "--vtk",
     .argument = "DIR",
-    .help = "write every shape of the run with its facets into DIR as VTKHDF files for ParaView",
+    .help = "write every shape of the run with its facets into the folder DIR as VTKHDF files for ParaView",
     .reads = HF_EXPORT_SCENE,
     .takes_stage = false,
     .write = export_vtk,

@@ -30,7 +30,7 @@ hf_status hf_report(const hf_export_request *request, const char *other, hf_mess
     HF_TRY(choose_output(request, other, output, messages));
     HF_TRY(hf_file_out_spare(other, "the result to compare with", output, messages));
     if (other && (hf_merged_is(request->file) || hf_merged_is(other)))
-        return hf_error(messages, HF_BAD_USAGE, "%s is a merged study: only two results can be compared",
+        return hf_error(messages, HF_BAD_USAGE, "%s is a merged study, but hifdm report compares only two results",
                         hf_merged_is(other) ? other : request->file);
     if (hf_merged_is(request->file))
         HF_TRY(hf_report_study(request->file, output, messages));

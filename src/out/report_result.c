@@ -442,7 +442,8 @@ static hf_status check_truss(const page *p, hf_messages *messages)
     const hf_series *end = &p->series[TRUSS_END];
     for (int i = 0; i < 2 * end->n; i++)
         if (!(end->value[i] >= 0 && end->value[i] < p->series[TRUSS_POSITION].n))
-            return hf_error(messages, HF_IO, "%s: is damaged: /truss/member/end names a node that is not there",
+            return hf_error(messages, HF_IO,
+                            "%s: this file is damaged, because the dataset /truss/member/end refers to a missing node",
                             p->path);
     return HF_OK;
 }

@@ -221,16 +221,17 @@ static hf_status check_sigmas(const job *j, double error_m, hf_messages *message
     double least = SIGMA_LEAST * error_m, rest = j->problem.settings.tolerance.sigma_support_m;
     if (rest > 0 && rest < least * (1 - ROUNDING))
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: tolerance.sigma_support_m of %.3g m is too small for cable errors of %.3g m: use at least "
-                        "%.3g, or 0",
+                        "%s: the value tolerance.sigma_support_m of %.3g m is too small for cable errors of %.3g m. "
+                        "Use at least %.3g m, or 0",
                         j->path, rest, error_m, least * (1 + ROUNDING));
     for (int i = 0; i < m->n_node; i++) {
         int row = m->row_of_node[i];
         double sigma = 1 / sqrt(j->measured.weight_per_m2[3 * row]);
         if (!j->measured.line[row] || sigma >= least * (1 - ROUNDING)) continue;
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s:%d: sigma_m of %.3g m is too small for cable errors of %.3g m: use at least %.3g",
-                        j->measured_path, j->measured.line[row], sigma, error_m, least * (1 + ROUNDING));
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s:%d: the value sigma_m of %.3g m is too small for cable errors of %.3g m. Use at least %.3g m",
+            j->measured_path, j->measured.line[row], sigma, error_m, least * (1 + ROUNDING));
     }
     return HF_OK;
 }
@@ -243,7 +244,8 @@ static hf_status make_prior(job *j, hf_messages *messages)
     if (status == HF_OK) {
         const double *expansion = c->tolerance.sigma_temperature_K > 0 ? material.expansion_per_K : NULL;
         status = hf_prior_make(&j->built, &c->tolerance, expansion, &j->prior);
-        if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the errors of %s", c->path);
+        if (status == HF_NO_MEMORY)
+            hf_error(messages, status, "out of memory for the cable errors of the case %s", c->path);
     }
     hf_material_free(&material);
     return status;
@@ -255,18 +257,17 @@ static hf_status find_prior(job *j, hf_messages *messages)
     double largest = 0;
     HF_TRY(make_prior(j, messages));
     if (j->problem.settings.tolerance.n_truss)
-        hf_warning(
-            messages,
-            "%s: hifdm adjust does not estimate the temperatures in tolerance.truss. It assumes that the truss has "
-            "the temperature at which it was made. Measure the net at this temperature, or include the displacements "
-            "of the truss in tolerance.sigma_support_m",
-            j->path);
+        hf_warning(messages,
+                   "%s: hifdm adjust does not estimate the temperatures in tolerance.truss. hifdm adjust assumes that "
+                   "the truss has its manufacturing temperature. Measure the net at the manufacturing temperature of "
+                   "the truss, or include the displacements of the truss in tolerance.sigma_support_m",
+                   j->path);
     for (int e = 0; e < j->built.model.n_cable; e++)
         largest = fmax(largest, j->prior.sigma_m[e]);
     if (largest > 0) return check_sigmas(j, largest, messages);
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: tolerance: no cable has errors to estimate; add sigma_cut_m, sigma_cut_ratio, sigma_EA_ratio "
-                    "or sigma_temperature_K",
+                    "%s: tolerance: the section defines no cable errors that hifdm can estimate. Add the key "
+                    "sigma_cut_m, sigma_cut_ratio, sigma_EA_ratio or sigma_temperature_K",
                     j->path);
 }
 
@@ -276,18 +277,17 @@ static hf_status check_sections(const hf_case *c, const char *path, hf_messages 
 {
     char location[HF_LOCATION_SIZE];
     if (!c->has_adjust)
-        hf_error(
-            messages, HF_BAD_CASE,
-            "%s: has no section adjust. Add adjust: {set: NAME, range_m: 0.002, step_m: 0.0001}: the set of cables "
-            "with turnbuckles, and the range and step of an adjustment",
-            path);
+        hf_error(messages, HF_BAD_CASE,
+                 "%s: the case has no `adjust` section. Add, for example, `adjust: {set: NAME, range_m: 0.002, step_m: "
+                 "0.0001}`, where NAME is the set of cables with turnbuckles",
+                 path);
     if (!c->has_tolerance)
-        hf_error(
-            messages, HF_BAD_CASE,
-            "%s: has no section tolerance: add tolerance: {sigma_cut_m: 0.0001}, the standard deviation of cutting",
-            path);
+        hf_error(messages, HF_BAD_CASE,
+                 "%s: the case has no `tolerance` section. Add, for example, `tolerance: {sigma_cut_m: 0.0001}`, where "
+                 "sigma_cut_m is the standard deviation of the cutting lengths",
+                 path);
     if (c->has_adjust && c->adjust.figure != HF_FIGURE_PSI && !c->has_surface)
-        hf_error(messages, HF_BAD_CASE, "%s: %s needs a target surface: add a section surface",
+        hf_error(messages, HF_BAD_CASE, "%s: the value %s needs a target surface. Add a `surface` section",
                  hf_config_place(c, location, "adjust.figure"), hf_adjust_figure_word[c->adjust.figure]);
     return messages->n_error ? HF_BAD_CASE : HF_OK;
 }
@@ -327,7 +327,9 @@ static hf_status find_figure(job *j, hf_messages *messages)
 {
     const hf_problem *p = &j->problem;
     if (p->settings.adjust.figure == HF_FIGURE_FACETS && p->facets.n_facet == 0)
-        return hf_error(messages, HF_BAD_CASE, "%s: adjust.figure: facets: this net has no facets", p->settings.path);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the value facets of adjust.figure needs facets, but this net has no facets",
+                        p->settings.path);
     return make_objectives(j, p->settings.adjust.figure, &j->objectives, messages);
 }
 
@@ -347,16 +349,16 @@ static hf_status check_misfit(const job *j, int row, hf_messages *messages)
     if (chi > FOREIGN)
         return hf_error(
             messages, HF_BAD_CASE,
-            "%s: this measurement does not belong to this net: chi^2 is %.3g per coordinate, but about 1 is expected. "
-            "The worst node is '%s' (line %d), %.3g mm from the nearest possible shape. Look for swapped ids, "
+            "%s: this measurement does not belong to this net, because chi^2 is %.3g per coordinate instead of about "
+            "1. The worst node '%s' (line %d) is %.3g mm from the nearest possible shape. Check for swapped ids, "
             "displaced supports (tolerance.sigma_support_m), another design or another load case. If only sigma_m or "
-            "the sigmas of section tolerance are wrong, they are too small by a factor of %.2g",
+            "the sigmas of the `tolerance` section are wrong, these values are too small by a factor of %.2g",
             j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3, sqrt(chi));
     hf_warning(
         messages,
-        "%s: these positions do not fit the net and its tolerances: chi^2 is %.3g per coordinate, but about 1 is "
-        "expected. The worst node is '%s' (line %d), %.3g mm off. Either sigma_m or a sigma of section tolerance is "
-        "too small, supports are displaced (tolerance.sigma_support_m), or the net has another design",
+        "%s: these positions do not fit the net and its tolerances, because chi^2 is %.3g per coordinate instead of "
+        "about 1. The worst node '%s' (line %d) is %.3g mm from the nearest possible shape. Possible causes are a "
+        "sigma that is too small, displaced supports (tolerance.sigma_support_m), or another design of the net",
         j->measured_path, chi, id, j->measured.line[row], distance_m * 1e3);
     return HF_OK;
 }
@@ -376,7 +378,8 @@ static hf_status estimate_errors(job *j, hf_messages *messages)
     HF_TRY(explain_failure(j, hf_estimate_find(p), "the estimated net", messages));
     HF_TRY(check_misfit(j, find_places(j), messages));
     if (!p->is_settled)
-        hf_warning(messages, "%s: the estimate did not converge in %d steps: the figures below belong to the last step",
+        hf_warning(messages,
+                   "%s: the estimate did not converge in %d steps, so the values below belong to the last step",
                    j->measured_path, p->n_step);
     return HF_OK;
 }

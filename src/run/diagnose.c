@@ -85,13 +85,13 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
         if (w->loose[i]) add_name(&loose, name_node(p, i, name));
     if (r->n_loose)
         hf_warning(messages,
-                   "no taut cable holds these nodes of the %s shape (%d): %s. hifdm places them as close to their "
-                   "target positions as their cables allow, and psi does not count them",
+                   "no taut cable holds these nodes of the %s shape (%d): %s. hifdm places loose nodes as close to "
+                   "their target positions as their cables allow. The surface error psi does not include loose nodes",
                    stage, r->n_loose, close_names(&loose));
     if (r->n_drifting)
         hf_warning(messages,
-                   "the equilibrium is not unique: %d free node%s no stiffness, mainly %s, so the position error is "
-                   "unknown. Assign another law to a cable at this node, or support the node",
+                   "the equilibrium is not unique, because %d free node%s no stiffness, mainly %s. The position error "
+                   "is therefore unknown. Assign another law to a cable at this node, or support the node",
                    r->n_drifting, r->n_drifting == 1 ? " has" : "s have", name_node(p, r->culprit, name));
 }
 
@@ -112,31 +112,31 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
     const hf_model *m = &p->model;
     name_list chains = {0}, slack = {0};
     if (r->stop_reason == HF_STOPPED_RMS_CHANGE && r->residual_N > p->settings.form.residual_tolerance * m->reference_N)
-        hf_warning(
-            messages,
-            "stop: rms_change ended before equilibrium of the %s shape: nodal residual %.2e N, relative error of "
-            "cable lengths up to %.2e. Use stop: residual to iterate to equilibrium",
-            stage, r->residual_N, r->length_error);
+        hf_warning(messages,
+                   "the stopping rule rms_change ended the iteration before equilibrium of the %s shape. The nodal "
+                   "residual is %.2e N, and the relative error of cable lengths is up to %.2e. To iterate until "
+                   "equilibrium, use form.stop: residual",
+                   stage, r->residual_N, r->length_error);
     if (r->stop_reason == HF_STOPPED_CONVERGED && is_off_by_law(p, r))
-        hf_warning(
-            messages,
-            "with the laws of the elastic cables, residual forces of up to %.2e N remain, although the residual of "
-            "the iteration is within form.residual_tolerance. The relative error of lengths is up to %.2e; lower "
-            "form.length_tolerance%s",
-            r->residual_N, r->length_error,
-            hf_evaluate_method(m, &p->settings.form, NULL) == HF_METHOD_NEWTON ? "" : ", or use form.method: newton");
+        hf_warning(messages,
+                   "with the laws of the elastic cables, residual forces of up to %.2e N remain, although the residual "
+                   "of the iteration is within form.residual_tolerance. The relative error of cable lengths is up to "
+                   "%.2e. Lower form.length_tolerance%s",
+                   r->residual_N, r->length_error,
+                   hf_evaluate_method(m, &p->settings.form, NULL) == HF_METHOD_NEWTON ? ""
+                                                                                      : ", or use form.method: newton");
     if (r->n_loaded_chain) {
         name_loaded_chains(p, w, &chains);
         hf_warning(messages,
-                   "%d straight chains of length-controlled cables carry lateral load, which no finite tension can "
-                   "balance. The boundary tensions therefore depend on the iteration at which the program stopped: %s",
+                   "%d straight chains of length-controlled cables carry a lateral load that no finite tension can "
+                   "balance: %s. The boundary tensions therefore depend on the iteration at which hifdm stopped",
                    r->n_loaded_chain, close_names(&chains));
     }
     name_loose(p, stage, w, r, messages);
     for (int e = 0; r->n_slack && e < m->n_cable; e++)
         if (hf_metrics_is_slack(m, w, e)) add_name(&slack, p->scene.cable_id[e]);
     if (r->n_slack)
-        hf_warning(messages, "slack cables in the %s shape (%d): %s", stage, r->n_slack, close_names(&slack));
+        hf_warning(messages, "these cables of the %s shape are slack (%d): %s", stage, r->n_slack, close_names(&slack));
 }
 
 /* Returns the cable under law tension or length with the maximum relative deviation from its law. */
@@ -175,24 +175,24 @@ static hf_status explain_not_converged(const hf_problem *p, const hf_form_result
     if (r->coupling.stop_reason == HF_COUPLING_MAX_ITERATIONS)
         return hf_error(
             messages, r->status,
-            "the coupling of net and truss did not converge in %d form-findings; an attachment still moves %s. Raise "
+            "the coupling of net and truss did not converge in %d form-findings. An attachment still moves %s. Raise "
             "coupling.max_iterations or coupling.tof_m, or lower form.%s, which limits the accuracy of the forces",
             r->coupling.iterations, name_move(&r->coupling, move),
             r->stop_reason == HF_STOPPED_RMS_CHANGE ? "rms_tolerance_m" : "residual_tolerance");
     if (r->culprit >= 0 && r->n_drifting == 0) /* a cable; with drifting nodes it is a row */
-        return hf_error(messages, r->status,
-                        "form-finding has reached the accuracy of double precision (nodal residual %.2e N). Cable "
-                        "'%s' is %.2e m long at %.2e N, which is too short or too tight for its coordinates. Move the "
-                        "origin closer to the cable, join its nodes or raise the tolerances",
-                        r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit],
-                        w->tension_N[r->culprit]);
+        return hf_error(
+            messages, r->status,
+            "form-finding has reached the limit of double precision at a nodal residual of %.2e N. Cable '%s' with a "
+            "length of %.2e m and a tension of %.2e N is too short or too tight for its coordinates. Move the origin "
+            "closer to this cable, join the nodes of the cable, or raise the tolerances",
+            r->residual_N, p->scene.cable_id[r->culprit], w->length_m[r->culprit], w->tension_N[r->culprit]);
     int e = furthest_off(p);
-    return hf_error(
-        messages, r->status,
-        "form-finding did not converge in %d iteration%s: nodal residual %.2e N, relative error of cable lengths up "
-        "to %.2e. Cable '%s' is farthest from its law, at %g N and %g m. Raise form.max_iterations or the tolerances",
-        r->iterations, r->iterations == 1 ? "" : "s", r->residual_N, r->length_error, p->scene.cable_id[e],
-        w->tension_N[e], w->length_m[e]);
+    return hf_error(messages, r->status,
+                    "form-finding did not converge in %d iteration%s. The nodal residual is %.2e N, and the relative "
+                    "error of cable lengths is up to %.2e. Cable '%s' deviates most from its law, with a tension of %g "
+                    "N and a length of %g m. Raise form.max_iterations or the tolerances",
+                    r->iterations, r->iterations == 1 ? "" : "s", r->residual_N, r->length_error, p->scene.cable_id[e],
+                    w->tension_N[e], w->length_m[e]);
 }
 
 /* Returns advice on how to reduce the pull of the net. */
@@ -220,7 +220,7 @@ static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, 
     char move[MOVE_SIZE];
     if (form->coupling.scheme == HF_COUPLING_AUTO && hf_evaluate_method(&p->model, form, NULL) == HF_METHOD_NEWTON)
         return hf_error(messages, r->status,
-                        "the truss is too soft for its net: net and truss together have no equilibrium. Stiffen the "
+                        "the truss is too soft for its net, so net and truss together have no equilibrium. Stiffen the "
                         "truss (%s) or %s",
                         stiffen, name_pull(p));
     const char *other = p->model.has_newton
@@ -228,7 +228,7 @@ static hf_status explain_too_soft(const hf_problem *p, const hf_form_result *r, 
                         : form->coupling.scheme == HF_COUPLING_PLAIN ? ", or try coupling.scheme: accelerated"
                                                                      : "";
     return hf_error(messages, r->status,
-                    "the truss is too soft for the coupling with its net: after %d form-findings an attachment still "
+                    "the truss is too soft for the coupling with its net. After %d form-findings, an attachment still "
                     "moves %s. Stiffen the truss (%s), %s%s",
                     c->iterations, name_move(c, move), stiffen, name_pull(p), other);
 }
@@ -240,17 +240,16 @@ static hf_status explain_chains(const hf_problem *p, hf_workspace *w, const hf_f
     double sum_m, span_m;
     if (hf_form_chain_is_short(&p->model, w, r->culprit, &sum_m, &span_m)) {
         hf_model_chain_name(&p->model, &p->scene, r->culprit, name, sizeof name);
-        return hf_error(
-            messages, r->status,
-            "ill-posed: the lengths of %s add up to %.10g m, but their supports are %.10g m apart, so there is no "
-            "shape. Use a longer L* or another law for these cables",
-            name, sum_m, span_m);
+        return hf_error(messages, r->status,
+                        "ill-posed: the lengths of %s add up to %.10g m, but the supports of these cables are %.10g m "
+                        "apart. Use a longer length L* or another law for these cables",
+                        name, sum_m, span_m);
     }
     name_loaded_chains(p, w, &chains);
     return hf_error(messages, r->status,
-                    "ill-posed: %d straight chains of length-controlled cables carry lateral load, which no finite "
-                    "tension can balance: %s. Use a sag (scene.parabolic_cylinder.scallop, longer L*) or another law "
-                    "for these cables, or support their nodes",
+                    "ill-posed: %d straight chains of length-controlled cables carry a lateral load that no finite "
+                    "tension can balance: %s. Give these cables a sag (scene.parabolic_cylinder.scallop, longer L*) or "
+                    "another law, or support their nodes",
                     r->n_loaded_chain, close_names(&chains));
 }
 
@@ -273,11 +272,10 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
     case HF_STRAIGHT_CHAIN:
         return explain_chains(p, w, r, messages);
     case HF_COLLAPSED:
-        return hf_error(
-            messages, r->status,
-            "ill-posed: the net collapses at cable '%s', whose length fell below %g times its length at the target "
-            "positions. Check the tensions, lengths and supports near it",
-            p->scene.cable_id[r->culprit], p->settings.form.collapse_ratio);
+        return hf_error(messages, r->status,
+                        "ill-posed: the net collapses at cable '%s', whose length fell below %g times its length at "
+                        "the target positions. Check the tensions, lengths and supports near this cable",
+                        p->scene.cable_id[r->culprit], p->settings.form.collapse_ratio);
     case HF_NOT_FINITE:
         if (r->culprit < 0) return hf_error(messages, r->status, "ill-posed: a tension is no longer a finite number");
         return hf_error(messages, r->status, "ill-posed: the tension of cable '%s' is no longer a finite number",
@@ -285,8 +283,8 @@ hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)
     default:
         if (r->culprit >= 0) name_node(p, r->culprit, node);
         return hf_error(messages, r->status,
-                        "ill-posed: the force density matrix is singular or not positive definite at node %s: its "
-                        "cables are slack, cannot balance its load, or do not lead to a support",
+                        "ill-posed: the force density matrix is singular or not positive definite at node %s. The "
+                        "cables of this node are slack, cannot balance its load, or do not lead to a support",
                         node);
     }
 }
@@ -521,8 +519,8 @@ static hf_status tell_objectives(const reach *q, hf_messages *messages)
         has_fault |= is_front || !is_reached;
         if (is_front || !is_reached)
             hf_error(messages, HF_BAD_CASE,
-                     "%s: no design variable of this case changes %s: %s. Add a design variable that does, or remove "
-                     "the row",
+                     "%s: no design variable of this case changes %s: %s. Add a design variable that changes this "
+                     "objective, or remove the objective",
                      place, name, why);
         else
             hf_warning(messages, "%s: no design variable of this case changes %s: %s", place, name, why);
@@ -536,21 +534,21 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
     char place[HF_LOCATION_SIZE];
     for (int i = 0; i < o->n_variable_row; i++)
         if (q->now.variable_row[i])
-            hf_warning(
-                messages,
-                "%s: has no effect at the initial design, because its cables or the cables at its supports are slack",
-                hf_config_place(&q->p->settings, place, "optimize.variables.%d", i));
+            hf_warning(messages,
+                       "%s: this design variable has no effect at the initial design, because its cables or the cables "
+                       "at its supports are slack",
+                       hf_config_place(&q->p->settings, place, "optimize.variables.%d", i));
     for (int i = 0; i < o->n_limit; i++)
         if (q->now.limit[i])
-            hf_warning(messages, "%s: no design variable of this case changes the limited figure: %s",
+            hf_warning(messages, "%s: no design variable of this case changes the limited quantity: %s",
                        hf_config_place(&q->p->settings, place, "optimize.limits.%d", i),
                        why_constant[o->limit[i].figure == HF_LIMIT_DEFLECTION ? OF_PULL : OF_TENSIONS]);
     if (q->p->objectives.n_objective > 0) return tell_objectives(q, messages);
     if (!q->now.psi) return HF_OK;
     return hf_error(
         messages, HF_BAD_CASE,
-        "%s: no design variable of this case changes psi: %s. Add a design variable that does, or use another "
-        "optimize.objective",
+        "%s: no design variable of this case changes psi: %s. Add a design variable that changes psi, or use another "
+        "objective in the list optimize.objective",
         hf_config_place(&q->p->settings, place, o->n_variable_row ? "optimize.variables.0" : "optimize.range_N"),
         why_constant[OF_INNER_NODES]);
 }
@@ -582,10 +580,11 @@ static void doubt_ranges(const hf_problem *p, hf_messages *messages)
         for (int k = 0; k < m->n_variable; k++)
             if (row_of_variable(m, k) == i && m->variable_cable[k] >= 0) most = fmax(most, fabs(p->initial[k]));
         if (!(most > 0) || !isinf(row->upper) || !(row->range > FAR_RANGE * most)) continue;
-        hf_warning(messages,
-                   "%s: %g is %.2g times the maximum value of this row, %.3g; for a relative range, write %g %%",
-                   hf_config_place(&p->settings, place, "optimize.variables.%d.range", i), row->range,
-                   row->range / most, most, row->range);
+        hf_warning(
+            messages,
+            "%s: the range %g is %.2g times the maximum value of this row, %.3g. For a relative range, write %g %%",
+            hf_config_place(&p->settings, place, "optimize.variables.%d.range", i), row->range, row->range / most, most,
+            row->range);
     }
 }
 
@@ -644,24 +643,24 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
     name_broken(p, w, &base, broken);
     if (above > 0 && o->n_limit > 0)
         return hf_error(messages, HF_NO_FEASIBLE,
-                        "optimize: no feasible design: %ld of %ld evaluations exceed optimize.limits or "
-                        "boundary_ratio_cap%s%s; loosen the limits, or widen %s%s",
+                        "optimize: the search found no feasible design, because %ld of %ld evaluations exceed "
+                        "optimize.limits or boundary_ratio_cap%s%s. Loosen the limits, or widen %s%s",
                         above, of->n_evaluation, *broken ? "; of the initial design, the" : "",
                         broken + (*broken == ':'), wider, hf_no_design_cap(p, base.boundary_tension_ratio, hint));
     if (above == 0)
         return hf_error(messages, HF_NO_FEASIBLE,
-                        "optimize: no feasible design: none of %ld evaluations has a shape (%s); narrow %s to keep "
-                        "designs closer to the initial design",
+                        "optimize: the search found no feasible design, because none of %ld evaluations has a shape "
+                        "(%s). Narrow %s to keep designs closer to the initial design",
                         shapeless, hf_status_text(of->trial_status[0]), wider);
     char of_initial[64] = "has no shape", others[64] = "";
     if (isfinite(base.boundary_tension_ratio))
         snprintf(of_initial, sizeof of_initial, "has %.4g", base.boundary_tension_ratio);
     if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
-    return hf_error(
-        messages, HF_NO_FEASIBLE,
-        "optimize: no feasible design: %ld of %ld evaluations are above boundary_ratio_cap %g%s; the initial "
-        "design %s; raise optimize.boundary_ratio_cap, or widen %s%s",
-        above, of->n_evaluation, o->boundary_ratio_cap, others, of_initial, wider, hf_no_design_cap(p, INFINITY, hint));
+    return hf_error(messages, HF_NO_FEASIBLE,
+                    "optimize: the search found no feasible design, because %ld of %ld evaluations are above "
+                    "boundary_ratio_cap %g%s. The initial design %s. Raise optimize.boundary_ratio_cap, or widen %s%s",
+                    above, of->n_evaluation, o->boundary_ratio_cap, others, of_initial, wider,
+                    hf_no_design_cap(p, INFINITY, hint));
 }
 
 const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_status status, char text[HF_NO_DESIGN_SIZE])
@@ -722,12 +721,11 @@ void hf_result_doubt_strain(const hf_problem *p, const hf_workspace *shape, hf_m
     }
     if (worst < 0) return;
     if (n > 1) snprintf(more, sizeof more, " and %d more", n - 1);
-    hf_warning(
-        messages,
-        "cable '%s'%s %s stretched by %s%.3g %% (%.4g N, EA %.4g N), but cables break at a few per cent: check that EA "
-        "is in N",
-        p->scene.cable_id[worst], more, n > 1 ? "are" : "is", n > 1 ? "up to " : "", most * 100,
-        shape->tension_N[worst], EA_N[worst]);
+    hf_warning(messages,
+               "cable '%s'%s %s stretched by %s%.3g %% (tension %.4g N, EA %.4g N), but cables break at a few per "
+               "cent. Check that EA is in N",
+               p->scene.cable_id[worst], more, n > 1 ? "are" : "is", n > 1 ? "up to " : "", most * 100,
+               shape->tension_N[worst], EA_N[worst]);
 }
 
 /* Displacement above which a warning appears, relative to the mean length of a node's cables. In the cases of configs/
@@ -843,19 +841,18 @@ static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes
     const far_nodes *open = &far[HF_COUNTED_NOT], *within = &far[HF_COUNTED_ACROSS];
     char more[32];
     if (open->n)
-        hf_warning(
-            messages,
-            "optimize: node %s%s moved far from its position after form-finding, by %.0f mm, but its cables are only "
-            "%.0f mm long. No objective counts this displacement. Vary fewer sets of cables, or add {figure: length, "
-            "set: %s, weight: 0.1} to optimize.objective%s",
-            p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
-            form->cable_m[open->row] * 1e3, set_at(p, open->row),
-            p->objectives.n_objective ? "" : " beside {figure: psi}");
+        hf_warning(messages,
+                   "optimize: node %s%s moved far from its position after form-finding, by %.0f mm, but its cables are "
+                   "only %.0f mm long. No objective counts this displacement. Vary fewer cable sets, or add the row "
+                   "{figure: length, set: %s, weight: 0.1} to the list optimize.objective%s",
+                   p->scene.node_id[p->model.node_of_row[open->row]], and_more(open, more), open->move_m * 1e3,
+                   form->cable_m[open->row] * 1e3, set_at(p, open->row),
+                   p->objectives.n_objective ? "" : " beside {figure: psi}");
     if (within->n)
         hf_warning(messages,
                    "optimize: node %s%s moved far within the surface, by %.0f mm, but its cables are only %.0f mm "
-                   "long. No objective counts this displacement. Vary fewer sets of cables, or add {figure: psi, "
-                   "weight: 0.1} to optimize.objective",
+                   "long. No objective counts this displacement. Vary fewer cable sets, or add the row {figure: psi, "
+                   "weight: 0.1} to the list optimize.objective",
                    p->scene.node_id[p->model.node_of_row[within->row]], and_more(within, more), within->move_m * 1e3,
                    form->cable_m[within->row] * 1e3);
 }

@@ -99,7 +99,7 @@ static hf_status keep_shape(const hf_problem *p, hf_load_case_stage *c, hf_store
     measure(&c->built, truss, truss ? p->carrier.truss.n_member : 0, &c->workspace, s);
     if (p->settings.has_surface && hf_surface_measure(&p->surface, &p->facets, m, c->workspace.position_m,
                                                       c->workspace.tension_N, &s->surface) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the surface errors");
     if (isnan(s->result.psi_m)) hf_surface_blank(&s->surface);
     return hf_store_built(store, s->name, m, &c->workspace, &p->carrier, truss, messages);
 }

@@ -54,7 +54,8 @@ hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
     if (hf_refine_applies(&p->evaluator)) return HF_OK;
     for (int k = 0; k < p->objectives.n_objective; k++)
         if (!hf_objectives_is_smooth(&p->objectives.objective[k].settings))
-            return hf_error(messages, HF_BAD_CASE, "%s: quantiles have no derivatives; use take: mean or worst",
+            return hf_error(messages, HF_BAD_CASE,
+                            "%s: quantiles have no derivatives. Use `take: mean` or `take: worst`",
                             hf_messages_location(messages, place, "optimize.%s.%d.quantile",
                                                  s->n_front > 0 ? "front" : "objective", k));
     return hf_error(messages, HF_BAD_CASE, "%s", hf_problem_no_slopes(p));
@@ -84,7 +85,8 @@ hf_status hf_problem_slopes(hf_problem *p, int n, const double *design, const hf
     hf_jacobian_free(&jacobian);
     return status == HF_OK
                ? HF_OK
-               : hf_error(messages, status, "out of memory for derivatives by %zu design variables", n_variable);
+               : hf_error(messages, status, "out of memory for the derivatives with respect to %zu design variables",
+                          n_variable);
 }
 
 void hf_problem_free(hf_problem *p)

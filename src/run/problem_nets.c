@@ -35,7 +35,7 @@ static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_
     if (status == HF_OK && n_sample > 0 && c->tolerance.n_truss > 0)
         status = hf_load_case_stage_rest_by_heat(p, q->truss_move_m_per_K);
     if (status != HF_OK)
-        return hf_error(messages, status, "the truss of the as-built nets of the objectives: %s",
+        return hf_error(messages, status, "hifdm cannot solve the truss of the as-built nets in the objectives: %s",
                         hf_status_text(status));
     hf_built_nets_make(&p->scene, &p->model, &c->form, has_load_cases ? &p->load_cases : NULL,
                        is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL, &heat, n_sample,
@@ -54,7 +54,7 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
     if (!has_load_cases && n_sample == 0) return HF_OK;
     if (HF_ARENA_ARRAYS(&block, HF_ARRAY(p->nets, 1), HF_ARRAY(move_m, (size_t)p->load_cases.n * n),
                         HF_ARRAY(by_heat, (size_t)p->settings.tolerance.n_truss * n)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the nets of the objectives");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the as-built nets in the objectives");
     p->nets->attachment_move_m = move_m;
     p->nets->truss_move_m_per_K = by_heat;
     return make_nets(p, has_load_cases, n_sample, messages);

@@ -51,17 +51,18 @@ static hf_status check_frequencies(const hf_problem *p, const hf_feed *feed, dou
         double terms = (double)plan.n_point * hf_pattern_angles(&plan);
         least_Hz = fmin(least_Hz, at->value[k]);
         if (terms <= PATTERN_TERMS_MOST) continue;
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: at %g GHz the far field needs %.3g quadrature points times %d angles, which are %.2g "
-                        "terms, but the maximum is %g. Lower the frequency, or narrow surface.pattern.theta_deg",
-                        hf_config_place(&p->settings, place, "surface.frequencies_Hz"), at->value[k] / 1e9,
-                        (double)plan.n_point, hf_pattern_angles(&plan), terms, PATTERN_TERMS_MOST);
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: at %g GHz, the far field needs %.3g quadrature points times %d angles. The far field is therefore a "
+            "sum of %.2g terms, but the maximum is %g terms. Lower the frequency, or narrow surface.pattern.theta_deg",
+            hf_config_place(&p->settings, place, "surface.frequencies_Hz"), at->value[k] / 1e9, (double)plan.n_point,
+            hf_pattern_angles(&plan), terms, PATTERN_TERMS_MOST);
     }
     double across = 2 * sqrt(area_m2 / HF_PI) * least_Hz / HF_LIGHT_M_PER_S;
     if (across < WAVELENGTHS_LEAST)
         hf_warning(messages,
-                   "surface.pattern: at %g GHz the reflector is %.2g wavelengths across: physical optics does not hold "
-                   "below about %g",
+                   "surface.pattern: at %g GHz, the reflector is only %.2g wavelengths across, but physical optics is "
+                   "valid only above about %g wavelengths",
                    least_Hz / 1e9, across, WAVELENGTHS_LEAST);
     return HF_OK;
 }
@@ -78,32 +79,30 @@ static hf_status check_pattern(const hf_problem *p, hf_messages *messages)
     bool is_given = hf_config_location(&p->settings, "surface.pattern.feed.position_m", place, sizeof place);
     if (!is_given) hf_config_place(&p->settings, place, "surface.pattern");
     if (p->facets.n_facet == 0)
-        return hf_error(messages, HF_BAD_CASE, "%s: this net has no facets, from which the far field would be computed",
-                        place);
+        return hf_error(messages, HF_BAD_CASE, "%s: the far field needs facets, but this net has no facets", place);
     int n_dark = hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
     if (isnan(feed.axis[2]))
         return hf_error(messages, HF_BAD_CASE, "%s: the feed at (%g, %g, %g) m cannot aim at its own position",
                         hf_config_place(&p->settings, place, "surface.pattern.feed.aim_m"), feed.position_m[0],
                         feed.position_m[1], feed.position_m[2]);
     if (n_dark > 0)
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: from (%g, %g, %g) m the feed illuminates %d of %d facets from behind or not at all; the feed must be "
-            "above all facets and aim at them",
-            place, feed.position_m[0], feed.position_m[1], feed.position_m[2], n_dark, p->facets.n_facet);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: from (%g, %g, %g) m, the feed illuminates %d of %d facets from behind or not at all. "
+                        "Place the feed above all facets, and aim the feed at the facets",
+                        place, feed.position_m[0], feed.position_m[1], feed.position_m[2], n_dark, p->facets.n_facet);
     if (hf_facet_measure(&p->surface, &p->facets, &theory, &m) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the surface errors");
     HF_TRY(check_frequencies(p, &feed, m.facet_area_m2, messages));
     double loss_dB = hf_surface_ruze_dB(m.facet_fit_half_path_rms_m, most_Hz);
     char loss[32] = "more than 3 dB";
     if (loss_dB <= RUZE_MOST_DB) snprintf(loss, sizeof loss, "%.2g dB", loss_dB);
     if (loss_dB > FACET_LOSS_MOST_DB)
-        hf_warning(
-            messages,
-            "surface.pattern: at %g GHz the facets are coarse. Even at the target positions their half-path error is "
-            "%.3g mm RMS, a loss of %s to grating lobes. A net of about %.0f facets instead of %d would lose %g dB",
-            most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss,
-            ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
+        hf_warning(messages,
+                   "surface.pattern: at %g GHz, the facets are coarse. Even at the target positions, the half-path "
+                   "error of the facets is %.3g mm RMS, with a loss of %s to grating lobes. A net of about %.0f facets "
+                   "instead of %d would lose %g dB",
+                   most_Hz / 1e9, m.facet_fit_half_path_rms_m * 1e3, loss,
+                   ceil(p->facets.n_facet * sqrt(loss_dB / FACET_LOSS_MOST_DB)), p->facets.n_facet, FACET_LOSS_MOST_DB);
     return HF_OK;
 }
 
@@ -112,11 +111,11 @@ static hf_status find_facets(hf_problem *p, hf_messages *messages)
     if (hf_facets_find(&p->scene, &p->surface, &p->facets) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the facets of a net of %d nodes", p->scene.n_node);
     if (!p->facets.is_planar)
-        hf_warning(messages,
-                   "surface: seen along z, cables of the surface cross without a common node, so there are no facets "
-                   "to measure");
+        hf_warning(messages, "surface: as seen along the z axis, cables of the surface cross without a common node, so "
+                             "hifdm cannot find the facets");
     else if (p->facets.n_facet == 0)
-        hf_warning(messages, "surface: the net has no facets, so errors and losses are those of the nodes alone");
+        hf_warning(messages,
+                   "surface: the net has no facets, so hifdm computes errors and losses from the nodes alone");
     return p->surface.has_pattern ? check_pattern(p, messages) : HF_OK;
 }
 
@@ -146,7 +145,7 @@ static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_m
     if (!source) return hf_config_scene(&p->settings, &p->scene, messages);
     if (!p->settings.has_import || *p->settings.facets_path)
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: a net from arrays needs a section scene with an import of nodes and cables, and no facets",
+                        "%s: a net from arrays needs a `scene` section that imports nodes and cables but no facets",
                         p->settings.path);
     HF_TRY(hf_scene_from_arrays(source->net, p->settings.EA_N, &p->scene, messages));
     HF_TRY(hf_scene_check(&p->scene, messages));
@@ -292,34 +291,33 @@ static hf_status check_variable(const hf_problem *p, int k, hf_messages *message
     if (is_cable && !(base > 0))
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: %s '%s' has no tension after form-finding, so the search cannot start. Use a "
-                        "shorter length for this cable, or a law that keeps it taut",
+                        "shorter length or a law that keeps this cable taut",
                         is_row ? "cable" : "boundary cable", name);
     if (is_row)
         hf_config_place(&p->settings, where, "optimize.variables.%d", p->model.variable[k].setting);
     else
         hf_config_place(&p->settings, where, "optimize.range_N");
     if (!is_row && (base + o->range_N < o->min_tension_N || base - o->range_N > o->max_tension_N))
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: boundary cable '%s' has %g N after form-finding; range_N %g around this value does not overlap "
-            "min_tension_N %g .. max_tension_N %g",
-            where, name, base, o->range_N, o->min_tension_N, o->max_tension_N);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: boundary cable '%s' has a tension of %g N after form-finding. The range of %g N (range_N) "
+                        "around this tension does not overlap the interval from min_tension_N %g to max_tension_N %g",
+                        where, name, base, o->range_N, o->min_tension_N, o->max_tension_N);
     hf_variables_bound(o, &p->model, k, base, &lower, &upper, &reach);
     if (is_row && is_cable && !(upper > 0))
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: the bounds of '%s' allow no value above 0 %s, but a cable needs a tension and a length",
-                        where, name, hf_model_variable_unit(&p->model, k));
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: the bounds of '%s' allow no value above 0 %s, but tensions and lengths of cables must be above zero",
+            where, name, hf_model_variable_unit(&p->model, k));
     if (is_row && (base + reach < lower || base - reach > upper))
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: '%s' has %g %s after form-finding; its range around this value does not overlap its bounds", where,
-            name, base, hf_model_variable_unit(&p->model, k));
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the design variable '%s' has the value %g %s after form-finding. The range around this "
+                        "value does not overlap the bounds of the design variable",
+                        where, name, base, hf_model_variable_unit(&p->model, k));
     if (hf_optimiser_plan_of(o).kind && !isfinite(upper - lower))
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: '%s' has no bound on one side; the genetic algorithm needs a range or both bounds (method: lm "
-            "does not)",
-            where, name);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the design variable '%s' has no bound on one side. Add the missing bound or a range for "
+                        "the genetic algorithm, or use optimize.method: lm",
+                        where, name);
     return HF_OK;
 }
 
@@ -345,12 +343,12 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
 {
     const hf_case *c = &p->settings;
     if (c->optimize.n_front == 0 || (p->load_cases.n == 0 && !c->has_tolerance)) return;
-    hf_warning(
-        messages,
-        "optimize.front: a front is not a single design, so %s%s%s belong to the net of the form-finding, before "
-        "optimisation. To compute them for point N of the front, run `hifdm run %s --point FRONT.h5:N -o point.h5`",
-        p->load_cases.n ? "load_cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
-        c->has_tolerance ? "tolerance" : "", c->path);
+    hf_warning(messages,
+               "optimize.front: a front is not a single design, so hifdm computes %s%s%s for the net after "
+               "form-finding, before optimisation. To compute load cases or samples for point N of the front, run "
+               "`hifdm run %s --point FRONT.h5:N -o point.h5`",
+               p->load_cases.n ? "load_cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
+               c->has_tolerance ? "tolerance" : "", c->path);
 }
 
 static hf_status check_base(const hf_problem *p, hf_messages *messages)
@@ -389,7 +387,7 @@ hf_status hf_problem_prepare(hf_problem *p, int n_thread, hf_messages *messages)
 {
     HF_TRY(hf_problem_base(p, messages));
     if (hf_problem_batch(p, n_thread) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the batch of a net of %d nodes", p->model.n_node);
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for evaluations of a net of %d nodes", p->model.n_node);
     return hf_problem_share(p, messages);
 }
 

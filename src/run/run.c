@@ -58,12 +58,13 @@ static hf_status prepare(hf_run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(hf_problem_load(q->case_path, q->source, q->set, q->n_set, r->request->control.stop_requested, &r->problem,
                            messages));
     if (settings->has_sweep && !part->of_sweep)
-        return hf_error(messages, HF_BAD_USAGE, "%s: has a section sweep; run it with 'hifdm sweep %s'", q->case_path,
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: this file has a `sweep` section. Run the study with 'hifdm sweep %s'", q->case_path,
                         q->case_path);
     HF_TRY(hf_tolerance_stage_check(&r->problem, part->of_tolerance, messages));
     if (q->seed) settings->optimize.seed = *q->seed;
     if (q->seed && !settings->has_optimize)
-        hf_warning(messages, "--seed has no effect, because the case has no section optimize");
+        hf_warning(messages, "the option --seed has no effect, because the case has no `optimize` section");
     if (q->point) HF_TRY(hf_take_point_read(q->point, &r->problem, &r->taken, messages));
     hf_problem_describe(&r->problem, s);
     return HF_OK;
@@ -97,7 +98,8 @@ static hf_status repeat_finished(const hf_run *r, hf_summary *s, hf_messages *me
 {
     HF_TRY(hf_store_read_finished(r->output, s, messages));
     if (s->tolerance) hf_tolerance_stage_end(r->request, r->output);
-    hf_warning(messages, "%s: is the finished result of this case; use --restart to compute it again", r->output);
+    hf_warning(messages, "%s: this file is the finished result of this case. Use --restart to compute the result again",
+               r->output);
     for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')
         if (!strncmp(line, "error: ", 7)) hf_error(messages, s->status, "%.*s", (int)strcspn(line + 7, "\n"), line + 7);
     return s->status;
@@ -115,9 +117,10 @@ static hf_status end_unfinished(hf_run *r, const hf_summary *s, hf_status status
     if (r->may_publish) kept = hf_store_publish(r->store, s, true, r->has_design ? NULL : messages);
     if (kept != HF_OK && !r->has_design) return kept;
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(r->request)))
-        hf_error(messages, status, "%s: interrupted%s; run the same command again to resume", r->output, r->stopped_at);
+        hf_error(messages, status, "%s: the run was interrupted%s. Run the same command again to resume", r->output,
+                 r->stopped_at);
     if (status != HF_INTERRUPTED && r->store && kept == HF_OK && !r->request->part.of_sweep)
-        hf_warning(messages, "%s: is unfinished; run the same command again to resume", r->output);
+        hf_warning(messages, "%s: this result is unfinished. Run the same command again to resume", r->output);
     return status;
 }
 
@@ -204,7 +207,7 @@ static hf_status execute(hf_run *r, hf_summary *s, hf_messages *messages)
     hf_status status = run_stages(r, s, messages);
     bool has_design_alone = keeps_design(r, status);
     if (hf_tolerance_stage_is_task(r->request) || !(leaves_result(status) || has_design_alone)) return status;
-    if (has_design_alone) hf_warning(messages, "tolerance: the result has only the design, without samples");
+    if (has_design_alone) hf_warning(messages, "tolerance: the result has only the design and no samples");
     return finish(r, s, status, messages);
 }
 

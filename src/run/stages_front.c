@@ -27,11 +27,10 @@ static void warn_of_front_steps(const hf_front *front, int max_iterations, hf_me
         n += p->status == HF_OK && !p->is_converged && p->steps >= max_iterations;
     }
     if (n > 0)
-        hf_warning(
-            messages,
-            "optimize.front: %d of %d points of the front have not converged after %d steps. They have no slope, and "
-            "better designs exist near them; raise optimize.refine_steps",
-            n, front->n_point, max_iterations);
+        hf_warning(messages,
+                   "optimize.front: %d of %d points of the front have not converged after %d steps. These points have "
+                   "no slope, and better designs exist near them. Raise optimize.refine_steps",
+                   n, front->n_point, max_iterations);
 }
 
 /* Writes why Levenberg-Marquardt has found no front. */
@@ -69,7 +68,8 @@ static hf_status keep_front(hf_run *r, double wall_s, hf_summary *s, hf_messages
     s->front->wall_s = wall_s;
     if (s->front->n_failed > 0) {
         hf_status first = front->point[front->n_point - s->front->n_failed].status;
-        hf_warning(messages, "optimize.front: %d of %d points of the front failed; the first reason: %s",
+        hf_warning(messages,
+                   "optimize.front: %d of %d points of the front failed. The first failure has this reason: %s",
                    s->front->n_failed, front->n_point,
                    first == HF_OUT_OF_LIMITS ? "the refinement did not reach its limits from the neighbouring points"
                                              : hf_status_text(first));
@@ -177,7 +177,7 @@ static hf_status refine_front(hf_run *r, hf_summary *s, hf_messages *messages)
     }
     explain_no_front(&r->problem, status, end, why);
     if (!has_earlier) return hf_error(messages, status == HF_BAD_CASE ? status : HF_NO_FEASIBLE, "%s", why);
-    hf_warning(messages, "%s; the front is that of the last generation", why);
+    hf_warning(messages, "%s. The result contains the front of the last generation", why);
     return keep_front(r, s->stage[HF_STAGE_SEARCH].wall_s, s, messages);
 }
 

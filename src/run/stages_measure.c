@@ -63,14 +63,14 @@ static void doubt_pattern(const hf_pattern_settings *s, const hf_pattern_summary
     if (to->figure[first].doubt == HF_CUT_AT_END)
         hf_warning(messages,
                    "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, the maximum gain is "
-                   "at the end of theta_deg. The beam may be outside, so its width and sidelobes are unknown; widen "
-                   "theta_deg",
+                   "at the end of theta_deg. The beam may be outside the range of theta_deg, so its width and "
+                   "sidelobes are unknown. Widen theta_deg",
                    n, n_all, hf_stage_word[stage], phi_deg, GHz);
     else
         hf_warning(messages,
-                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, steps of %.3g deg "
-                   "are coarse: fewer than %g steps are within the width of the beam. The maximum gain may be missed, "
-                   "and the width and sidelobes are unknown; raise n_theta, or narrow theta_deg",
+                   "surface.pattern: in %d of %d cuts of stage %s, such as phi %g deg at %g GHz, the steps of %.3g deg "
+                   "are coarse. Fewer than %g steps are within the beam width, so hifdm may miss the maximum gain. The "
+                   "beam width and the sidelobes are unknown. Raise n_theta, or narrow theta_deg",
                    n, n_all, hf_stage_word[stage], phi_deg, GHz, (s->theta_deg[1] - s->theta_deg[0]) / (s->n_theta - 1),
                    HF_PATTERN_WIDTH_STEPS);
 }
@@ -189,27 +189,28 @@ hf_status hf_stage_measure(hf_run *r, hf_stage stage, const hf_workspace *w, hf_
     hf_surface_measures *measures = &s->stage[stage].surface;
     if (measure_sets(p, w, &s->stage[stage]) != HF_OK ||
         (stage != HF_STAGE_FORM && measure_limits(p, w, &s->stage[stage]) != HF_OK))
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of a shape");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the results of a shape");
     if (!p->settings.has_surface) return HF_OK;
     if (hf_surface_measure(&p->surface, &p->facets, &p->model, w->position_m, w->tension_N, measures) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the measures of the surface");
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the surface errors");
     if (isnan(hf_metrics_psi_m(&p->model, w))) hf_surface_blank(measures);
     const hf_surface_fit *fit = &measures->fit;
     if (measures->mesh_pull_ratio > MESH_PULL_DOUBT)
         hf_warning(messages,
-                   "surface: in the shape of stage %s the mesh pulls on %s; the pillows are computed to first order in "
-                   "N l / tension%s. Raise the tensions of the cables, or lower surface.mesh_tension_N_per_m",
+                   "surface: in the shape of stage %s, the mesh pulls on %s. hifdm computes the pillows to first order "
+                   "in the ratio N l / tension%s. Raise the cable tensions, or lower surface.mesh_tension_N_per_m",
                    hf_stage_word[stage], hf_facet_mesh_pull_words(measures->mesh_pull_ratio, words),
                    measures->mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
                    : p->surface.has_pattern ? ", so the facets have neither errors nor a far field"
                                             : ", so the facets have no errors");
     if (!fit->converged)
         hf_warning(messages,
-                   "surface: the best fit to the shape of stage %s did not converge in %d steps, so it has no value",
+                   "surface: the best fit to the shape of stage %s did not converge in %d steps, so the results of "
+                   "this fit are missing",
                    hf_stage_word[stage], fit->iterations);
     hf_status status = measure_pattern(r, stage, w, s, messages);
     if (status == HF_INTERRUPTED)
-        hf_warning(messages, "surface.pattern: interrupted: the shape of stage %s has no far field",
+        hf_warning(messages, "surface.pattern: the run was interrupted, so the shape of stage %s has no far field",
                    hf_stage_word[stage]);
     return status;
 }

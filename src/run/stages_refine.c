@@ -116,11 +116,11 @@ static void warn_of_steps(const steps *q, const hf_refine_result *r)
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
     if (n > 0 && before > 0)
         hf_warning(q->messages,
-                   "Levenberg-Marquardt has not converged after %d steps, and the last %d steps lowered %s by %.2g "
-                   "%%. Better designs exist near this one; raise optimize.refine_steps",
+                   "Levenberg-Marquardt has not converged after %d steps, and the last %d steps lowered %s by %.2g %%. "
+                   "Better designs exist near this design. Raise optimize.refine_steps",
                    r->iterations, n, has_merit(q) ? "the merit" : "psi", 100 * (1 - q->now.merit / before));
     else
-        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps; raise optimize.refine_steps",
+        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps. Raise optimize.refine_steps",
                    r->iterations);
 }
 

@@ -20,7 +20,7 @@ hf_status hf_stage_begin(hf_run *r, hf_summary *s, hf_messages *messages)
     hf_problem *p = &r->problem;
     hf_form_result *form = &s->stage[HF_STAGE_FORM].result;
     if (p->model.n_variable == 0) {
-        hf_warning(messages, "optimize: skipped, because no boundary cable has a free end");
+        hf_warning(messages, "optimize: hifdm skips the optimisation, because no boundary cable has a free end");
         return HF_OK;
     }
     if (hf_places_keep(p, &r->places) != HF_OK)

@@ -50,11 +50,10 @@ static hf_status choose_points(sweep *w, const hf_points *points)
     for (int i = 0; i < points->n_point; i++)
         w->state[i] = points->point[i].state;
     if (points->count[HF_POINT_OUTDATED] && !(wanted & 1u << HF_POINT_OUTDATED))
-        return hf_error(
-            w->messages, HF_EXISTS,
-            "%s: the base case has changed since %d points were run; use --retry outdated,missing to run them "
-            "again, or --dir for another folder",
-            w->ledger.folder, points->count[HF_POINT_OUTDATED]);
+        return hf_error(w->messages, HF_EXISTS,
+                        "%s: the base case has changed since %d points were run. Use --retry outdated,missing to run "
+                        "these points again, or use --dir to select another folder",
+                        w->ledger.folder, points->count[HF_POINT_OUTDATED]);
     for (int i = w->request->task; i < points->n_point; i += w->request->tasks)
         if (wanted & 1u << points->point[i].state)
             w->todo[w->count.n_todo++] = i;
@@ -170,11 +169,10 @@ static bool claim(sweep *w, int i)
     pthread_mutex_lock(&w->lock);
     w->count.n_elsewhere += !is_ours || is_finished;
     if (lock == HF_LOCK_NONE && !w->is_without_locks)
-        hf_warning(
-            w->messages,
-            "%s: this file system has no locks, so 'hifdm status' cannot show running points. Use --task to prevent "
-            "several sweeps from running the same points",
-            w->ledger.folder);
+        hf_warning(w->messages,
+                   "%s: this file system has no locks, so 'hifdm status' cannot show running points. Use the --task "
+                   "option to prevent several sweeps from running the same points",
+                   w->ledger.folder);
     w->is_without_locks |= lock == HF_LOCK_NONE;
     pthread_mutex_unlock(&w->lock);
     return is_ours && !is_finished;
@@ -226,19 +224,18 @@ static hf_status run_points(sweep *w)
     w->count.wall_s = hf_clock_s() - w->start_s;
     w->count.has_run = true;
     int left = n->n_todo - n->n_done - n->n_failed - n->n_elsewhere;
-    if (n->n_elsewhere) hf_warning(w->messages, "%d points are run by another process", n->n_elsewhere);
+    if (n->n_elsewhere) hf_warning(w->messages, "another process is running %d points of this sweep", n->n_elsewhere);
     if (w->fatal != HF_OK)
-        return hf_error(
-            w->messages, w->fatal,
-            "the sweep has stopped: %d points are missing, and none of them counts as failed. Remove the cause, then "
-            "run the same command again to resume",
-            left);
+        return hf_error(w->messages, w->fatal,
+                        "the sweep has stopped with %d missing points, but none of these points counts as failed. "
+                        "Remove the cause, then run the same command again to resume",
+                        left);
     if (left)
         return hf_error(w->messages, HF_INTERRUPTED,
-                        "interrupted: %d points are missing; run the same command again to resume", left);
+                        "the sweep was interrupted with %d missing points. Run the same command again to resume", left);
     int n_failed = n->n_failed + n->n_failed_before;
     if (!n_failed) return HF_OK;
-    return hf_error(w->messages, HF_POINTS_FAILED, "%d points failed%s; 'hifdm status' lists the reasons", n_failed,
+    return hf_error(w->messages, HF_POINTS_FAILED, "%d points failed%s. 'hifdm status' lists the reasons", n_failed,
                     n->n_failed ? "" : " earlier and are run again only with --retry failed");
 }
 

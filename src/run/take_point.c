@@ -44,10 +44,10 @@ static hf_status read_words(const char *point, hf_front_origin *taken, hf_messag
     const char *colon = strrchr(point, ':');
     size_t length = colon ? (size_t)(colon - point) : 0;
     if (length == 0 || !hf_text_uint64(colon + 1, &number) || number < 1 || number > INT_MAX)
-        return hf_error(
-            messages, HF_BAD_USAGE,
-            "--point must be FILE:N, a result with a front and the number of a point, such as night.h5:7, not '%s'",
-            point);
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--point must be FILE:N, such as night.h5:7, not '%s'. FILE is a result with a Pareto front, "
+                        "and N is the number of a point",
+                        point);
     if (length >= sizeof taken->path) return hf_error(messages, HF_BAD_USAGE, "--point: the path is too long");
     snprintf(taken->path, sizeof taken->path, "%.*s", (int)length, point);
     taken->point = (int)number;
@@ -110,20 +110,23 @@ static hf_status check_point(const hf_problem *p, const stored_front *f, const h
 {
     char words[DIFFERENCES_SIZE];
     if (taken->point > f->front.n_point)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "%s: its front has points 1 to %d, but no point %d; `hifdm export %s --front FILE` lists them",
-                        taken->path, f->front.n_point, taken->point, taken->path);
+        return hf_error(
+            messages, HF_BAD_USAGE,
+            "%s: the front has points 1 to %d, but no point %d. `hifdm export %s --front FILE` lists these points",
+            taken->path, f->front.n_point, taken->point, taken->path);
     const hf_front_point *point = &f->front.point[taken->point - 1];
     if (point->status != HF_OK)
-        return hf_error(messages, HF_BAD_USAGE, "%s: point %d of its front failed and has no design: %s", taken->path,
+        return hf_error(messages, HF_BAD_USAGE, "%s: point %d of the front failed and has no design: %s", taken->path,
                         taken->point, hf_status_text(point->status));
     if (!has_objectives(p, f->summary) || !has_variables(p, f))
-        return hf_error(messages, HF_BAD_CASE, "%s: its front has other %s than %s: " MADE_OF, taken->path,
+        return hf_error(messages, HF_BAD_CASE, "%s: the front has other %s than %s: " MADE_OF, taken->path,
                         has_objectives(p, f->summary) ? "variables" : "objectives", p->settings.path,
                         tell_keys(p, words));
     if (point->mark == HF_FRONT_DOMINATED)
-        hf_warning(messages, "%s: point %d is dominated: another point of its front is as good in all objectives",
-                   taken->path, taken->point);
+        hf_warning(
+            messages,
+            "%s: point %d is dominated, because another point of the front is at least as good in all objectives",
+            taken->path, taken->point);
     return HF_OK;
 }
 
@@ -153,7 +156,8 @@ hf_status hf_take_point_read(const char *point, hf_problem *p, hf_taken_point *t
     hf_status status = hf_store_read_summary(origin->path, f.summary, messages);
     if (status == HF_OK && !f.summary->front)
         status = hf_error(messages, HF_BAD_USAGE,
-                          "%s: has no front, so it has no points; run a case with optimize.front", origin->path);
+                          "%s: this result has no Pareto front. Use the result of a case with the list optimize.front",
+                          origin->path);
     if (status == HF_OK) status = hf_store_read_front(origin->path, &f.front, &f.variable, &f.variable_size, messages);
     if (status == HF_OK) status = check_point(p, &f, origin, messages);
     if (status == HF_OK) status = take(&f.front, origin, taken, messages);
@@ -176,7 +180,7 @@ static hf_status check_bounds(const hf_problem *p, const hf_taken_point *taken, 
         if (!(value < low - room) && !(value > high + room)) continue;
         hf_model_variable_name(&p->model, &p->scene, k, name, sizeof name);
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: point %d of its front has %.6g for '%s', but %s allows %.6g to %.6g: " MADE_OF,
+                        "%s: point %d of the front has %.6g for '%s', but %s allows %.6g to %.6g: " MADE_OF,
                         origin->path, origin->point, value, name, p->settings.path, low, high, tell_keys(p, words));
     }
     return HF_OK;
@@ -190,12 +194,12 @@ hf_status hf_take_point_check(const hf_problem *p, const hf_taken_point *taken, 
     if (found->status == HF_NO_MEMORY) return hf_error(messages, HF_NO_MEMORY, "out of memory for a design");
     if (found->status != HF_OK)
         return hf_error(messages, HF_BAD_CASE,
-                        "%s: point %d of its front is not a feasible design of %s (%s): " MADE_OF, origin->path,
+                        "%s: point %d of the front is not a feasible design of %s (%s): " MADE_OF, origin->path,
                         origin->point, p->settings.path, hf_status_text(found->status), tell_keys(p, words));
     for (int k = 0; k < p->objectives.n_objective; k++)
         if (!(fabs(found->objective[k] - taken->objective[k]) <= SAME * taken->largest[k]))
             return hf_error(messages, HF_BAD_CASE,
-                            "%s: point %d of its front has %s %.6g, but in %s it has %.6g: " MADE_OF, origin->path,
+                            "%s: point %d of the front has %s %.6g, but in %s it has %.6g: " MADE_OF, origin->path,
                             origin->point, hf_objectives_name(&p->objectives, k, name), taken->objective[k],
                             p->settings.path, found->objective[k], tell_keys(p, words));
     return check_bounds(p, taken, bounds, messages);

@@ -58,14 +58,15 @@ static hf_status check_measures(const hf_problem *p, hf_messages *messages)
         const char *fault = NULL, *better = loss_of_nodes(p, measure);
         if (better)
             hf_warning(messages,
-                       "tolerance.require.%d.measure: %s counts the nodes only; %s also counts the facets between them",
+                       "tolerance.require.%d.measure: %s counts the nodes only, but %s also includes the facets "
+                       "between the nodes",
                        i, hf_tolerance_measure_word[measure], better);
         if (!hf_montecarlo_measures(&p->surface, &p->facets, measure))
             fault = "this net has no facets";
         else if (measure == HF_TOLERANCE_PATTERN_LOSS && !make_beam(p, &beam))
             fault = HF_GAIN_TOO_COARSE;
         if (!fault) continue;
-        status = hf_error(messages, HF_BAD_CASE, "%s: %s is not measured: %s",
+        status = hf_error(messages, HF_BAD_CASE, "%s: hifdm cannot compute the measure %s: %s",
                           hf_config_place(c, place, "tolerance.require.%d.measure", i),
                           hf_tolerance_measure_word[measure], fault);
     }
@@ -81,7 +82,7 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
         if (isnan(t->expansion_per_K[e]) && n++ == 0) first = e;
     if (n == 0) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables have no expansion_per_K, such as '%s'; add it to a row of `cables`",
+                    "%s: %d cables have no expansion_per_K, such as '%s'. Add this value to a row of the list `cables`",
                     hf_config_place(&p->settings, place, "tolerance.sigma_temperature_K"), n, s->cable_id[first]);
 }
 
@@ -118,12 +119,11 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
         const char *key = by_cut >= by_ratio && by_cut >= by_heat ? "tolerance.sigma_cut_m"
                           : by_ratio >= by_heat                   ? "tolerance.sigma_cut_ratio"
                                                                   : "tolerance.sigma_temperature_K";
-        return hf_error(
-            messages, HF_BAD_CASE,
-            "%s: cable '%s' is %.3g m long, and errors of cutting and temperature (%d standard deviations) may change "
-            "its length by the fraction %.3g, but the maximum is 0.5; use smaller errors",
-            hf_config_place(&p->settings, place, "%s", key), s->cable_id[e], length, LARGEST_NUMBER,
-            by_cut + by_ratio + by_heat);
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: cable '%s' is %.3g m long. At %d standard deviations, errors of cutting and temperature "
+                        "change the cable length by the fraction %.3g, but the maximum is 0.5. Use smaller errors",
+                        hf_config_place(&p->settings, place, "%s", key), s->cable_id[e], length, LARGEST_NUMBER,
+                        by_cut + by_ratio + by_heat);
     }
     return HF_OK;
 }
@@ -156,7 +156,7 @@ static hf_status check_struts(const hf_problem *p, hf_messages *messages)
         if (hf_law_has(s->law[e], HF_LAW_MAY_PUSH) && s->target[e] < 0 && n++ == 0) first = e;
     if (n == 0) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables are in compression, such as '%s', but the as-built net cannot have struts",
+                    "%s: the as-built net cannot have struts, but %d cables are in compression, such as '%s'",
                     place_section(&p->settings, place), n, s->cable_id[first]);
 }
 
@@ -170,7 +170,8 @@ hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_mes
 {
     if (!p->settings.has_tolerance && !is_demanded) return HF_OK;
     if (!p->settings.has_tolerance)
-        return hf_error(messages, HF_BAD_USAGE, "%s: has no section tolerance; 'hifdm schema' lists its keys",
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: the case has no `tolerance` section. 'hifdm schema' lists the keys of this section",
                         p->settings.path);
     hf_material material;
     hf_status status = make_material(p, &material, messages), other[5] = {HF_OK};
@@ -278,7 +279,8 @@ static hf_status find_samples(job *j, hf_messages *messages)
         long first = hf_samples_first(s, chunk, &n);
         if (s->has[chunk] || !is_mine(q, chunk)) continue;
         hf_status status = hf_montecarlo_run(&j->montecarlo, 1, first, n);
-        if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory for the measures of samples");
+        if (status == HF_NO_MEMORY)
+            hf_error(messages, status, "tolerance: out of memory for the results of the samples");
         HF_TRY(status);
         HF_TRY(hf_samples_add(s, chunk, j->montecarlo.row));
         n_new += n;
@@ -325,8 +327,8 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
-                     "tolerance: the net of the design is not stiff even without errors: the position of some node is "
-                     "not unique");
+                     "tolerance: the net of the design is not stiff even without errors, so the position of some node "
+                     "is not unique");
     }
     hf_material_free(&material);
     hf_arena_free_block(block);
@@ -390,8 +392,8 @@ static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messag
             sigma_m * 1e3, j->shape->length_m[e], scene->cable_id[e], j->built.scene.EA_N[e], j->shape->tension_N[e],
             error_N);
     hf_warning(messages,
-               "tolerance: slack cables in %d of %d samples%s. Raise the minimum tensions (form.pretension_N, "
-               "optimize.limits), use cables with a lower EA, or lower the errors (tolerance.sigma_cut_m)",
+               "tolerance: cables are slack in %d of %d samples%s. Raise the minimum tensions (form.pretension_N, "
+               "optimize.limits), use cables with a lower EA, or reduce the errors (tolerance.sigma_cut_m)",
                t->n_with_slack, t->samples, why);
 }
 

@@ -27,9 +27,10 @@ static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_lim
     to->upper = s->upper;
     if (s->figure == HF_LIMIT_DEFLECTION) {
         if (m->n_attachment > 0) return HF_OK;
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: deflection needs a truss, because it limits the deflection of attachments",
-                        hf_messages_location(messages, where, "optimize.limits.%d.figure", row));
+        return hf_error(
+            messages, HF_BAD_CASE,
+            "%s: a deflection limit needs a truss, because this limit applies to the attachments of a truss",
+            hf_messages_location(messages, where, "optimize.limits.%d.figure", row));
     }
     hf_messages_location(messages, where, "optimize.limits.%d.set", row);
     to->n_cable = hf_cable_pick_some(scene, s->set, where, to->cable, messages);

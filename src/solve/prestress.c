@@ -296,12 +296,11 @@ static hf_status name_unheld(const programme *p, const hf_scene *scene, hf_messa
     }
     char more[32] = "";
     if (n > 5) snprintf(more, sizeof more, " and %d more", n - 5);
-    return hf_error(
-        messages, HF_BAD_CASE,
-        "form.prestress: exact: no tensions above zero hold %d of the %d free nodes at their target positions: %s%s. "
-        "Each of these nodes lacks a cable that pulls it back onto the surface. Tie it to a second net, or allow "
-        "other positions (form.prestress: given)",
-        n, m->n_free, names, more);
+    return hf_error(messages, HF_BAD_CASE,
+                    "form.prestress: exact: no tensions above zero hold %d of the %d free nodes at their target "
+                    "positions: %s%s. Each of these nodes lacks a cable that pulls it back onto the surface. Tie these "
+                    "nodes to a second net, or allow other positions (form.prestress: given)",
+                    n, m->n_free, names, more);
 }
 
 /* ---- the scene ---- */
@@ -319,7 +318,8 @@ static hf_status find_tensions(programme *p, const hf_scene *scene, hf_messages 
     }
     if (status == HF_OK && largest_N <= HELD * p->reference_N) return HF_OK;
     if (status == HF_INTERRUPTED)
-        return hf_error(messages, status, "form.prestress: exact: interrupted before its tensions were found");
+        return hf_error(messages, status,
+                        "form.prestress: exact: the run was interrupted before hifdm found the tensions");
     return name_unheld(p, scene, messages);
 }
 
@@ -336,8 +336,8 @@ static void tell_lengths(const hf_scene *s, hf_messages *messages)
     }
     if (n)
         hf_warning(messages,
-                   "form.prestress: exact: the length given to cable '%s' (%.6g m) is not used%s: the cable gets the "
-                   "tension that holds its nodes at their target positions",
+                   "form.prestress: exact: the length given to cable '%s' (%.6g m) is not used%s. Instead, hifdm "
+                   "computes the cable tension that holds the nodes at their target positions",
                    s->cable_id[first], s->target[first], n > 1 ? ", nor are those of others" : "");
 }
 

@@ -78,7 +78,7 @@ static void damaged_at(hf_hdf5 *io, hid_t place, const char *name, const char *a
     if (io->status != HF_OK) return;
     full_name(place, name, attribute, where);
     io->is_damaged = true;
-    io->status = hf_error(io->messages, HF_IO, "%s: is damaged: %s %s", io->path, where, what);
+    io->status = hf_error(io->messages, HF_IO, "%s: this file is damaged: %s %s", io->path, where, what);
 }
 
 void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *attribute)
@@ -88,11 +88,10 @@ void hf_hdf5_missing(hf_hdf5 *io, hid_t place, const char *name, const char *att
     if (io->status != HF_OK) return;
     full_name(place, name, attribute, where);
     io->is_damaged = true;
-    io->status =
-        hf_error(io->messages, HF_IO,
-                 "%s: was written by hifdm %s and has no %s, which this version needs. Run its case again, or read it "
-                 "with that version",
-                 io->path, io->made_by, where);
+    io->status = hf_error(io->messages, HF_IO,
+                          "%s: this file of hifdm %s does not contain %s, which this version needs. Run the case "
+                          "again, or read the file with the version that wrote the file",
+                          io->path, io->made_by, where);
 }
 
 void hf_hdf5_no_memory(hf_hdf5 *io)

@@ -29,11 +29,11 @@ bool hf_hdf5_look_at_file(hf_hdf5 *io, const char *name)
         io->status = hf_error(io->messages, HF_IO, "%s: cannot open: %s", io->path, strerror(errno));
     } else if (S_ISDIR(info.st_mode)) {
         io->is_damaged = true;
-        io->status = hf_error(io->messages, HF_IO, "%s: is a folder, not a result file", io->path);
+        io->status = hf_error(io->messages, HF_IO, "%s: this is a folder, not a result file", io->path);
     } else if (!S_ISREG(info.st_mode) || H5Fis_hdf5(name) == 0) {
         io->is_damaged = true;
-        io->status =
-            hf_error(io->messages, HF_IO, "%s: is not a result of hifdm, because it is not an HDF5 file", io->path);
+        io->status = hf_error(io->messages, HF_IO,
+                              "%s: this file is not a result of hifdm, because it is not an HDF5 file", io->path);
     }
     return io->status == HF_OK;
 }
@@ -159,7 +159,7 @@ hf_status hf_hdf5_try(hf_child_work *work, const char *const *command, const cha
     }
     if (!end.is_known || end.exit_status == 0) return HF_OK;
     hf_child_describe(end, how, size);
-    return end.is_sent ? hf_error(messages, HF_IO, "%s: the process that read it was ended by %s", path, how)
+    return end.is_sent ? hf_error(messages, HF_IO, "%s: the process that read this file was ended by %s", path, how)
                        : HF_EXISTS;
 }
 

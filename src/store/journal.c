@@ -70,14 +70,13 @@ static hf_status open_and_lock(hf_journal *j, content *is, hf_messages *messages
             j->file = -1;
             errno = why;
             if (lock == HF_LOCK_FAILED) return fail(j, "lock", j->path, messages);
-            return hf_error(messages, HF_EXISTS,
-                            "%s: another process is writing it (that process holds the lock of %s)", j->result,
-                            j->path);
+            return hf_error(messages, HF_EXISTS, "%s: another process is writing this result and holds the lock of %s",
+                            j->result, j->path);
         }
         if (lock == HF_LOCK_NONE && i == 0)
             hf_warning(messages,
-                       "%s: this file system has no locks (%s), so hifdm cannot keep a second process from writing "
-                       "this result. Do not start one",
+                       "%s: this file system has no locks (%s), so hifdm cannot prevent a second process from writing "
+                       "this result. Do not start a second process",
                        j->result, strerror(errno));
         if (hf_path_leads_to(j->path, j->file)) return look_at_head(j, is, messages);
         close(j->file); /* its owner rotated or removed it between open and lock */
@@ -96,7 +95,7 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
     HF_TRY(open_and_lock(j, &is, messages));
     if (is != JOURNAL && replaces) { /* unlink, not truncate: the name may be a link to another file */
         if (unlink(j->path) != 0) return fail(j, "remove", j->path, messages);
-        hf_warning(messages, "%s: %s was not a journal of hifdm and is replaced", result, j->path);
+        hf_warning(messages, "%s: %s was not a journal of hifdm, so hifdm replaced this file", result, j->path);
         if (j->file >= 0) close(j->file);
         HF_TRY(open_and_lock(j, &is, messages));
     }
@@ -105,12 +104,12 @@ hf_status hf_journal_open(const char *result, bool replaces, hf_journal *j, hf_m
     j->file = -1;
     if (is == OTHER_VERSION)
         return hf_error(messages, HF_EXISTS,
-                        "%s: %s is a journal of another version of hifdm; finish the run with that version, or "
-                        "restart it with --restart (in a sweep: --retry failed)",
+                        "%s: %s is a journal of another version of hifdm. Finish the run with that version, or restart "
+                        "the run with --restart (in a sweep: --retry failed)",
                         result, j->path);
     return hf_error(messages, HF_EXISTS,
-                    "%s: %s is not a journal of hifdm, but has the name of one. Delete it, use --restart (in a sweep: "
-                    "--retry failed) to replace both files, or use -o to choose another name",
+                    "%s: %s is not a journal of hifdm, but the file has the name of a journal. Delete this file, use "
+                    "--restart (in a sweep: --retry failed) to replace both files, or use -o to choose another name",
                     result, j->path);
 }
 
@@ -188,7 +187,8 @@ hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
     if (now_s - j->synced_s < HF_JOURNAL_SYNC_S) return HF_OK;
     j->synced_s = now_s;
     if (!hf_path_leads_to(j->path, j->file))
-        return hf_error(messages, HF_IO, "%s: %s was removed or replaced during the run", j->result, j->path);
+        return hf_error(messages, HF_IO, "%s: the journal %s was removed or replaced during the run", j->result,
+                        j->path);
     if (j->has_news && hf_file_io_sync(j->file, true) != 0) return fail(j, "write", j->path, messages);
     j->has_news = false;
     return HF_OK;
@@ -249,8 +249,8 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     bool is_ours = got && strncmp(header + 8, identity, HF_JOURNAL_IDENTITY) == 0;
     if (!is_ours && info.st_size > HEADER_BYTES)
         return hf_error(messages, HF_EXISTS,
-                        "%s: %s belongs to another case. Delete it, put the right journal there, or restart the run "
-                        "with --restart (in a sweep: --retry failed)",
+                        "%s: the journal %s belongs to another case. Delete this journal, replace it with the right "
+                        "journal, or restart the run with --restart (in a sweep: --retry failed)",
                         j->result, j->path);
     if (!is_ours) return hf_journal_restart(j, identity, messages);
     snprintf(j->identity, sizeof j->identity, "%s", identity);
@@ -267,7 +267,7 @@ hf_status hf_journal_replay(hf_journal *j, const char *identity, hf_journal_take
     if (got < 0 && errno == ENOMEM) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", j->result);
     if (got < 0) return fail(j, "read", j->path, messages);
     if (is_damaged)
-        hf_warning(messages, "%s: %s is damaged: its last %lld bytes are ignored", j->result, j->path,
+        hf_warning(messages, "%s: the journal %s is damaged, so hifdm ignores its last %lld bytes", j->result, j->path,
                    (long long)(info.st_size - at));
     if (hf_file_io_cut(j->file, at) != 0 || lseek(j->file, at, SEEK_SET) < 0)
         return fail(j, "write", j->path, messages);

@@ -126,7 +126,8 @@ hf_status hf_store_read_front(const char *path, hf_front *front, char **variable
     *variable = NULL;
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/front"))
-        io.status = hf_error(messages, HF_IO, "%s: this run has no front: its case has no optimize.front", path);
+        io.status = hf_error(messages, HF_IO,
+                             "%s: this run has no Pareto front, because the case has no list optimize.front", path);
     hid_t group = hf_hdf5_open_group(&io, "/front");
     int n_variable = hf_hdf5_length(&io, group, "variable", VARIABLES_MAX);
     read_front(&io, group, n_variable, front);

@@ -82,10 +82,13 @@ hf_status hf_store_read_truss(const char *path, hf_truss *t, hf_carrier_state *s
     *state = (hf_carrier_state){0};
     hf_hdf5 io = hf_store_open_result(path, messages);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss") && io.status == HF_OK)
-        io.status = hf_error(messages, HF_IO, "%s: has no truss: its case has no truss section", path);
+        io.status =
+            hf_error(messages, HF_IO, "%s: this result has no truss, because the case has no `truss` section", path);
     if (io.status == HF_OK && !hf_hdf5_has(&io, io.file, "/truss/node") && io.status == HF_OK)
         io.status = hf_error(messages, HF_IO,
-                             "%s: is unfinished, and a run stores its truss at the end; resume the run first", path);
+                             "%s: this result has no truss yet, because hifdm stores the truss at the end of a run. "
+                             "Resume the run first",
+                             path);
     hid_t group = hf_hdf5_open_group(&io, "/truss");
     int n_node = hf_hdf5_length(&io, group, "node/mass_kg", HF_LAYOUT_COUNT_MAX);
     int n_member = hf_hdf5_length(&io, group, "member/joint", HF_LAYOUT_COUNT_MAX);

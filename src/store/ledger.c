@@ -73,7 +73,7 @@ hf_status hf_ledger_open(const char *folder, hf_ledger *l, hf_messages *messages
     snprintf(path, sizeof path, "%s/claims", folder);
     l->claims = hf_file_out_keep(path, &was_there);
     if (l->claims < 0 && errno == EEXIST)
-        return hf_error(messages, HF_IO, "%s: is not a regular file; remove it", path);
+        return hf_error(messages, HF_IO, "%s: this is not a regular file. Remove it", path);
     if (l->claims < 0) return hf_error(messages, HF_IO, "%s: cannot open: %s", path, strerror(errno));
     return HF_OK;
 }
@@ -90,8 +90,8 @@ hf_status hf_ledger_close(hf_ledger *l, hf_messages *messages)
     free(l->news);
     pthread_mutex_destroy(&l->lock);
     if (!why) return HF_OK;
-    return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s; the last points may run again", l->folder,
-                    strerror(why));
+    return hf_error(messages, HF_IO, "%s: cannot write to the disk: %s. The next sweep may run the last points again",
+                    l->folder, strerror(why));
 }
 
 hf_lock hf_ledger_claim(hf_ledger *l, const char *id)
@@ -166,7 +166,7 @@ hf_status hf_ledger_write(hf_ledger *l, const hf_study *study, int point, hf_sta
                           const hf_summary *s, hf_messages *messages)
 {
     char *line = malloc(2 * LINE_SIZE); /* the second half is for the names of the columns */
-    if (!line) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for a row", l->folder);
+    if (!line) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory for a row of the table of points", l->folder);
     size_t used =
         (size_t)snprintf(line, LINE_SIZE, "%s\t%s\t%s\t", study->id[point], study->fingerprint, hf_status_word(status));
     used += put_reason(reason, line + used);
@@ -296,7 +296,7 @@ static bool read_rows(reading *r, char *text)
 
 static hf_status tell_in_the_way(const char *path, hf_messages *messages)
 {
-    return hf_error(messages, HF_IO, "%s: is not a regular file; remove it", path);
+    return hf_error(messages, HF_IO, "%s: this is not a regular file. Remove it", path);
 }
 
 /* Reads what the file holds now, from byte `at` on, as a text, which the caller frees. Rows that are added meanwhile
@@ -315,8 +315,9 @@ static hf_status read_text(const char *path, off_t at, char **text, hf_messages 
     int why = errno;
     close(file);
     if (size > ROWS_MAX)
-        return hf_error(messages, HF_IO, "%s: is not a table of hifdm, because it is longer than %lld MB; remove it",
-                        path, (long long)ROWS_MAX / 1000000);
+        return hf_error(messages, HF_IO,
+                        "%s: this file is larger than %lld MB, so it is not a table of hifdm. Remove it", path,
+                        (long long)ROWS_MAX / 1000000);
     if (!*text) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     (*text)[n < 0 ? 0 : n] = '\0';
     if (n >= 0) return HF_OK;
@@ -466,7 +467,7 @@ static hf_status find_lost(reading *r, const char *folder, hf_messages *messages
         if (p->state != HF_POINT_DONE) continue;
         hf_ledger_content content = hf_ledger_file(folder, r->study, i, path);
         if (content == HF_LEDGER_UNSEEN)
-            return hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
+            return hf_error(messages, HF_IO, "%s: cannot get the status of this file: %s", path, strerror(errno));
         if (content == HF_LEDGER_FILE && !hf_journal_peek(path, identity, &has_records)) continue;
         *p = r->failure[i];
         r->points->n_lost += p->state == HF_POINT_MISSING;

@@ -257,7 +257,8 @@ static void write_links(merger *m, const char *folder)
         const char *id = m->study->id[i];
         hf_ledger_content content = hf_ledger_file(folder, m->study, i, file);
         if (content == HF_LEDGER_UNSEEN)
-            m->io.status = hf_error(m->io.messages, HF_IO, "%s: cannot get its status: %s", file, strerror(errno));
+            m->io.status =
+                hf_error(m->io.messages, HF_IO, "%s: cannot get the status of this file: %s", file, strerror(errno));
         else if (content == HF_LEDGER_FILE && !is_known)
             m->io.status =
                 hf_error(m->io.messages, HF_IO, "%s: cannot create links to %s: %s", m->io.path, folder, strerror(why));
@@ -333,13 +334,14 @@ static hf_status check_output(const char *path, hf_messages *messages)
     hf_status tried = hf_hdf5_try(look_at_output, NULL, path, how, sizeof how, messages);
     if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
-                        "%s: exists and is damaged: the process that read it was ended by %s; use --force to replace "
-                        "it or -o to choose another name",
+                        "%s: this file exists and is damaged. The process that read the file was ended by %s. Use "
+                        "--force to replace the file, or use -o to choose another name",
                         path, how);
     HF_TRY(tried);
     if (is_replaceable(path)) return HF_OK;
     return hf_error(messages, HF_EXISTS,
-                    "%s: exists and is not a merged study; use --force to replace it or -o to choose another name",
+                    "%s: this file exists and is not a merged study. Use --force to replace the file, or use -o to "
+                    "choose another name",
                     path);
 }
 
@@ -372,9 +374,9 @@ static hf_status spare_inputs(const hf_study *s, const char *folder, const char 
     int is = is_of_sweep(s, folder, path);
     if (is == 0) return HF_OK;
     if (is < 0)
-        return hf_error(messages, HF_IO, "%s: cannot tell whether it belongs to the sweep in %s: %s", path, folder,
-                        strerror(errno));
-    return hf_error(messages, HF_EXISTS, "%s: belongs to the sweep in %s; choose another name", path, folder);
+        return hf_error(messages, HF_IO, "%s: cannot determine whether this file belongs to the sweep in %s: %s", path,
+                        folder, strerror(errno));
+    return hf_error(messages, HF_EXISTS, "%s: this file belongs to the sweep in %s. Choose another name", path, folder);
 }
 
 static hf_status merge(merger *m, const char *folder, const char *output, bool force, hf_messages *messages)

@@ -254,7 +254,9 @@ void hf_renamed_note(hf_hdf5 *io)
     if (hf_hdf5_has_attribute(&probe, probe.file, "/", "format_version"))
         hf_hdf5_get(&probe, probe.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
     bool is_unread = io->status == HF_OK && probe.status != HF_OK && !probe.is_damaged;
-    if (is_unread) io->status = hf_error(io->messages, probe.status, "%s: cannot read its format_version", io->path);
+    if (is_unread)
+        io->status =
+            hf_error(io->messages, probe.status, "%s: cannot read the attribute format_version of this file", io->path);
     if (version == HF_FORMAT_0_2) io->alias = hf_renamed;
 }
 

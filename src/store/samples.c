@@ -49,7 +49,7 @@ static hf_status take_chunk(void *context, int chunk, const void *payload, size_
     if (chunk >= 0 && chunk < s->n_all) hf_samples_first(s, chunk, &n);
     if (n == 0 || bytes != (size_t)n * ROW_BYTES)
         return hf_error(s->messages, HF_EXISTS,
-                        "%s: its journal has %zu bytes of chunk %d, which this case does not have. Delete the "
+                        "%s: the journal has %zu bytes of chunk %d, but this case has no such chunk. Delete the "
                         "journal, or restart the run with --restart",
                         s->name, bytes, chunk);
     return keep_rows(s, chunk, payload);
@@ -84,9 +84,10 @@ hf_status hf_samples_look(const char *result, int task, int tasks, const char of
     for (int i = first; i < end; i++) {
         name_journal(result, i, i < 0 ? 0 : tasks, name);
         if (hf_journal_peek(name, identity, &has_records) && has_records && strncmp(identity, of_case, OF_CASE) != 0)
-            return hf_error(messages, HF_EXISTS,
-                            "%s: %s.journal has samples of another case; delete it, or restart the run with --restart",
-                            result, name);
+            return hf_error(
+                messages, HF_EXISTS,
+                "%s: %s.journal has samples of another case. Delete the journal, or restart the run with --restart",
+                result, name);
     }
     return HF_OK;
 }

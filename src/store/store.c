@@ -118,11 +118,12 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
     s->rows.every = o->store == HF_KEEP_BEST ? HF_GENERATIONS_BEST : o->store == HF_KEEP_EVERY ? o->store_every : 1;
     int seen = hf_path_look_at_link(s->f.out.path, &info);
     if (!restart && seen < 0)
-        s->f.io.status = hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
+        s->f.io.status = hf_error(messages, HF_IO, "%s: cannot get the status of this file: %s", path, strerror(errno));
     else if (!restart && seen > 0)
-        s->f.io.status = hf_error(
-            messages, HF_EXISTS,
-            "%s: exists; use --restart (in a sweep: --retry failed) to replace it or -o to choose another name", path);
+        s->f.io.status = hf_error(messages, HF_EXISTS,
+                                  "%s: this file already exists. Use --restart (in a sweep: --retry failed) to replace "
+                                  "the file, or use -o to choose another name",
+                                  path);
     if (s->f.io.status == HF_OK && hf_store_identify(settings, scene, truss, s->identity) != HF_OK)
         s->f.io.status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     if (s->f.io.status == HF_OK) {
@@ -174,13 +175,13 @@ static void compare_shape(hf_store *s, const hf_model *m, const hf_workspace *w)
     if (is_same) return;
     if (!(apart_N <= SAME_SHAPE * largest_N))
         s->f.io.status = hf_error(s->f.io.messages, HF_EXISTS,
-                                  "%s: this machine or build computes another shape (tensions differ by %.2g N). Use "
-                                  "--restart (in a sweep: --retry failed) to restart the run",
+                                  "%s: this machine or build computes another shape, with tensions that differ by %.2g "
+                                  "N. Use --restart (in a sweep: --retry failed) to restart the run",
                                   s->f.out.path, apart_N);
     else
         hf_warning(s->f.io.messages,
-                   "%s: this machine or build computes the shape with other last bits than the one that began the "
-                   "run. The result will not be bit-identical to that of an uninterrupted run",
+                   "%s: this machine or build computes the shape with other last bits than the machine or build that "
+                   "began the run. The result will not be bit-identical to the result of an uninterrupted run",
                    s->f.out.path);
 }
 
@@ -382,11 +383,11 @@ static void complete(hf_store *s, const hf_summary *summary, bool finished)
 static hf_status demand_restored(hf_store *s, hf_messages *messages)
 {
     if (s->n_journal == 0) return HF_OK;
-    return s->f.io.status = hf_error(messages, HF_EXISTS,
-                                     "%s: this machine or build computes other generations than the one that began "
-                                     "the run. The stored generations are kept. Use --restart (in a sweep: --retry "
-                                     "failed) to restart the run",
-                                     s->f.out.path);
+    return s->f.io.status = hf_error(
+               messages, HF_EXISTS,
+               "%s: this machine or build computes other generations than the machine or build that began the run. The "
+               "stored generations are kept. Use --restart (in a sweep: --retry failed) to restart the run",
+               s->f.out.path);
 }
 
 hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once, hf_messages *messages)
@@ -422,7 +423,8 @@ hf_status hf_store_complete(hf_store *s, const hf_summary *summary, hf_messages 
     s->f.io.messages = messages;
     if (s->f.io.status != HF_OK)
         return hf_error(messages, s->f.io.status,
-                        "%s: is incomplete, because an earlier part of it could not be written", s->f.out.path);
+                        "%s: this file is incomplete, because hifdm could not write an earlier part of the file",
+                        s->f.out.path);
     HF_TRY(demand_restored(s, messages));
     hf_hdf5_lock();
     complete(s, summary, true);

@@ -27,14 +27,16 @@ hf_status hf_store_file_check(const char *path, hf_messages *messages)
     char folder[4096];
     struct stat info;
     if (lstat(path, &info) == 0 && stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        return hf_error(messages, HF_EXISTS, "%s: is %s; use -o to choose a file name", path,
+        return hf_error(messages, HF_EXISTS, "%s: this is %s. Use -o to choose a file name", path,
                         S_ISDIR(info.st_mode) ? "a folder" : "not a regular file");
     hf_path_folder(path, folder, sizeof folder);
     if (!*path || stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
-        return hf_error(messages, HF_IO, "%s: there is no folder %s; create it or use -o to choose another name", path,
+        return hf_error(messages, HF_IO,
+                        "%s: the folder %s does not exist. Create this folder, or use -o to choose another name", path,
                         folder);
     if (access(folder, W_OK | X_OK) != 0)
-        return hf_error(messages, HF_IO, "%s: cannot write into the folder %s: %s; use -o to choose another name", path,
+        return hf_error(messages, HF_IO,
+                        "%s: cannot write into the folder %s: %s. Use the -o option to choose another name", path,
                         folder, strerror(errno));
     return HF_OK;
 }
@@ -89,8 +91,8 @@ static void copy_visible(hf_store_file *f)
     int why = errno;
     free(buffer);
     if (!ok)
-        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot copy it to %s: %s", f->out.path, f->out.temporary,
-                                strerror(why));
+        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot copy this file to %s: %s", f->out.path,
+                                f->out.temporary, strerror(why));
 }
 
 void hf_store_file_open(hf_store_file *f)
@@ -174,11 +176,11 @@ static void keep_work(hf_store_file *f, bool is_worth_keeping)
     }
     if (is_taken)
         f->io.status = hf_error(f->io.messages, HF_EXISTS,
-                                "%s: was created, replaced or removed by another process during the run%s%s",
+                                "%s: another process created, replaced or removed this file during the run%s%s",
                                 f->out.path, words, kept);
     else
-        f->io.status =
-            hf_error(f->io.messages, HF_IO, "%s: cannot be given this name: %s%s%s", f->out.path, why, words, kept);
+        f->io.status = hf_error(f->io.messages, HF_IO, "%s: cannot give this name to the result: %s%s%s", f->out.path,
+                                why, words, kept);
 }
 
 /* Returns true if `name` is a second name of the earlier result itself. A restart leaves both names if it ended between
@@ -198,12 +200,14 @@ hf_status hf_store_file_demand_room(hf_store_file *f, hf_messages *messages)
         f->earlier = seen ? HF_EARLIER_NONE : HF_EARLIER_THERE;
         return HF_OK;
     }
-    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot get its status: %s", f->earlier_name, strerror(errno));
+    if (seen < 0)
+        return hf_error(messages, HF_IO, "%s: cannot get the status of this file: %s", f->earlier_name,
+                        strerror(errno));
     if (seen == 0 || is_earlier(f->earlier_name, f->out.path)) return HF_OK;
-    return hf_error(messages, HF_EXISTS,
-                    "%s: this name is reserved for the earlier result until the new one is finished; remove the file "
-                    "or rename it",
-                    f->earlier_name);
+    return hf_error(
+        messages, HF_EXISTS,
+        "%s: hifdm needs this name for the earlier result until the new result is finished. Remove or rename the file",
+        f->earlier_name);
 }
 
 static void keep_earlier(hf_store_file *f)
@@ -263,7 +267,8 @@ void hf_store_file_end(hf_store_file *f, hf_messages *messages)
     f->io.messages = NULL;
     hf_store_file_close(f);
     if (f->earlier == HF_EARLIER_KEPT && messages)
-        hf_warning(messages, "%s: the earlier result is %s until this one is finished", f->out.path, f->earlier_name);
+        hf_warning(messages, "%s: the earlier result is named %s until the new result is finished", f->out.path,
+                   f->earlier_name);
     hf_file_out_drop(&f->out, messages); /* before the lock is released */
     bool is_needless = f->is_published ? hf_journal_is_empty(&f->journal) : f->journal.is_new;
     hf_journal_close(&f->journal, is_needless && !f->out.is_left);

@@ -200,14 +200,14 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     *state = HF_STORE_NOTHING;
     int failed = stat(path, &info);
     if (failed && hf_file_io_fault(errno, HF_OK) != HF_OK)
-        return hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
+        return hf_error(messages, HF_IO, "%s: cannot get the status of this file: %s", path, strerror(errno));
     if (failed || !S_ISREG(info.st_mode)) return HF_OK; /* hf_store_create reports what is wrong */
     hf_messages said = {0};
     hf_status tried = hf_hdf5_try(hf_store_read_like_a_run, reader, path, words, sizeof words, messages);
     if (tried == HF_EXISTS)
         return hf_error(messages, HF_EXISTS,
-                        "%s: exists and is damaged: the process that read it was ended by %s; use --restart (in a "
-                        "sweep: --retry failed) to replace it or -o to choose another name",
+                        "%s: this file exists and is damaged. The process that read the file was ended by %s. Use "
+                        "--restart (in a sweep: --retry failed) to replace the file, or use -o to choose another name",
                         path, words);
     HF_TRY(tried);
     if (hf_store_identify(settings, scene, truss, now) != HF_OK)
@@ -223,13 +223,13 @@ hf_status hf_store_look(const char *path, const hf_case *settings, const hf_scen
     hf_messages_free(&said);
     if (io.status != HF_OK)
         return hf_error(messages, HF_EXISTS,
-                        "%s: exists and is %s; use --restart (in a sweep: --retry failed) to replace it or -o to "
-                        "choose another name",
+                        "%s: this file exists and is %s. Use --restart (in a sweep: --retry failed) to replace the "
+                        "file, or use -o to choose another name",
                         path, is_cut ? "cut off: a truncated HDF5 file" : "not a result of hifdm");
     if (*words)
         return hf_error(messages, HF_EXISTS,
-                        "%s: exists and is the %s result of another case; what differs: %s. Use --restart (in a "
-                        "sweep: --retry failed) to replace it or -o to choose another name",
+                        "%s: this file exists and is the %s result of another case. The differences are: %s. Use "
+                        "--restart (in a sweep: --retry failed) to replace the file, or use -o to choose another name",
                         path, finished ? "finished" : "unfinished", words);
     *state = finished ? HF_STORE_FINISHED : HF_STORE_UNFINISHED;
     if (finished) remove_journal(path, keeps, then);
@@ -254,7 +254,7 @@ hf_status hf_store_look_before(const char *path, hf_earlier *earlier, hf_message
     hf_messages said = {0};
     *earlier = HF_EARLIER_NONE;
     int seen = hf_path_look(path, &info);
-    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot get its status: %s", path, strerror(errno));
+    if (seen < 0) return hf_error(messages, HF_IO, "%s: cannot get the status of this file: %s", path, strerror(errno));
     if (seen == 0 || !S_ISREG(info.st_mode)) return HF_OK;
     hf_status tried = hf_hdf5_try(hf_store_read_like_a_run, reader, path, words, sizeof words, messages);
     if (tried != HF_EXISTS) HF_TRY(tried);

@@ -37,13 +37,14 @@ hf_hdf5 hf_store_open_result(const char *path, hf_messages *messages)
     hf_hdf5_open_file(&io, path);
     if (io.status != HF_OK) return io;
     if (!is_ours(&io, &io.is_damaged))
-        io.status = hf_error(messages, HF_IO, "%s: is an HDF5 file, but it is damaged or not a result of hifdm", path);
+        io.status = hf_error(messages, HF_IO, "%s: this HDF5 file is damaged or is not a result of hifdm", path);
     hf_hdf5_get(&io, io.file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
     if (version == HF_FORMAT_0_2) io.alias = hf_renamed;
     if (io.status == HF_OK && version != HF_FORMAT_VERSION && version != HF_FORMAT_0_2) {
         io.is_damaged = true;
-        io.status = hf_error(messages, HF_IO, "%s: has format version %d, but this program reads version %d", path,
-                             version, HF_FORMAT_VERSION);
+        io.status =
+            hf_error(messages, HF_IO, "%s: this file has format version %d, but this program reads format version %d",
+                     path, version, HF_FORMAT_VERSION);
     }
     note_version(&io);
     return io;
@@ -58,7 +59,7 @@ hf_status hf_store_close_result(hf_hdf5 *io)
 hf_status hf_store_fail_damaged(const char *path, hf_messages *messages)
 {
     return hf_error(messages, HF_EXISTS,
-                    "%s: is damaged or of another version; use --restart (in a sweep: --retry failed) to replace it "
-                    "or -o to choose another name",
+                    "%s: this file is damaged or belongs to another version of hifdm. Use --restart (in a sweep: "
+                    "--retry failed) to replace the file, or use -o to choose another name",
                     path);
 }

@@ -33,7 +33,9 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     hf_hdf5 io = hf_store_open_result(path, messages);
     *summary = (hf_summary){0};
     if (io.status == HF_OK && hf_hdf5_has(&io, io.file, "points"))
-        io.status = hf_error(messages, HF_IO, "%s: is the merged table of a sweep; `hifdm report` reads it", path);
+        io.status =
+            hf_error(messages, HF_IO,
+                     "%s: this file is the merged table of a sweep. Use `hifdm report` to read the table", path);
     hf_layout_pass_part(&io, false, HF_LAYOUT_RUN, summary);
     summary->has_coupling = io.status == HF_OK && hf_hdf5_has(&io, io.file, "coupling");
     summary->has_truss = io.status == HF_OK && hf_hdf5_has(&io, io.file, "/truss");
@@ -166,8 +168,9 @@ hf_status hf_store_read_shape(const char *path, hf_stage stage, hf_shape *shape,
     bool is_there = *position && hf_hdf5_has(&io, io.file, position);
     if (!is_there && io.status == HF_OK) /* hf_hdf5_has has reported a failure already */
         io.status =
-            hf_error(messages, HF_IO, "%s: has no %s shape: that stage did not run, or found no feasible design", path,
-                     hf_stage_word[stage]);
+            hf_error(messages, HF_IO,
+                     "%s: this result has no %s shape, because that stage did not run or found no feasible design",
+                     path, hf_stage_word[stage]);
     read_shape(&io, hf_stage_group[stage], shape);
     if (hf_store_close_result(&io) != HF_OK) hf_shape_free(shape);
     return io.status;
@@ -182,7 +185,8 @@ static bool has_state(hf_hdf5 *io, const char *name, const char *part, char grou
     snprintf(object, sizeof object, "/load_cases/%s/%s", name, part);
     bool is_there = hf_hdf5_has(io, io->file, object);
     if (!is_there && io->status == HF_OK)
-        io->status = hf_error(io->messages, HF_IO, "%s: has no shape of a load case '%s'", io->path, name);
+        io->status =
+            hf_error(io->messages, HF_IO, "%s: this result has no shape of the load case '%s'", io->path, name);
     return is_there;
 }
 

@@ -31,9 +31,9 @@ static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_stat
     if (generation < next) return false; /* published before the journal was rotated */
     if (generation == next && bytes == g->payload_bytes && generation < g->limit) return true;
     *status = hf_error(s->f.io.messages, HF_EXISTS,
-                       "%s: does not match %s, whose next record is generation %d with %zu bytes instead of "
-                       "generation %d with %zu bytes. Was the file copied or replaced? Use --restart (in a sweep: "
-                       "--retry failed) to restart the run",
+                       "%s: this result does not match %s. The next record of this journal is generation %d with %zu "
+                       "bytes instead of generation %d with %zu bytes. Was the file copied or replaced? Use --restart "
+                       "(in a sweep: --retry failed) to restart the run",
                        s->f.out.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
     return false;
 }
@@ -107,8 +107,8 @@ static void refuse_other_format(hf_store *s)
     hf_hdf5_get(io, io->file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
     if (io->status == HF_OK && version != HF_FORMAT_VERSION)
         io->status = hf_error(io->messages, HF_EXISTS,
-                              "%s: is an unfinished result of hifdm 0.2, which this version cannot resume; finish it "
-                              "with hifdm 0.2, or restart it with --restart (in a sweep: --retry failed)",
+                              "%s: this version cannot resume an unfinished result of hifdm 0.2. Finish the run with "
+                              "hifdm 0.2, or restart the run with --restart (in a sweep: --retry failed)",
                               s->f.out.path);
 }
 
@@ -122,7 +122,8 @@ static void read_state(hf_store *s)
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
     if (hf_store_keeps_earlier(io)) s->f.earlier = HF_EARLIER_KEPT;
     if (io->status == HF_OK && finished)
-        io->status = hf_error(io->messages, HF_EXISTS, "%s: is finished; there is nothing to resume", s->f.out.path);
+        io->status = hf_error(io->messages, HF_EXISTS, "%s: this result is finished, so there is nothing to resume",
+                              s->f.out.path);
     if (!hf_hdf5_has(io, io->file, "/variable")) { /* the run stopped before its search, or has none */
         if (io->status == HF_OK) io->status = hf_journal_restart(&s->f.journal, s->identity, io->messages);
         return;
@@ -197,16 +198,16 @@ static hf_status breed_record(void *context, int generation, const void *payload
     if (!goes_on || !hf_generations_take_payload(g, payload, earlier, &o->population)) {
         *o = before;
         if (b->drops) return HF_DIFFERENT;
-        return hf_error(s->f.io.messages, HF_EXISTS,
-                        "%s: from generation %d on, this machine or build computes other designs than the one that "
-                        "began the run. Only the machine or build that began the run can recover %s. Nothing was "
-                        "changed",
-                        s->f.out.path, generation + 1, s->f.journal.path);
+        return hf_error(
+            s->f.io.messages, HF_EXISTS,
+            "%s: from generation %d on, this machine or build computes other designs than the machine or build that "
+            "began the run. Only the machine or build that began the run can recover %s. Nothing was changed",
+            s->f.out.path, generation + 1, s->f.journal.path);
     }
     if (!hf_generations_are_sound(&o->population))
         return hf_error(s->f.io.messages, HF_EXISTS,
-                        "%s: %s is damaged: no run stores its generation %d. Use --restart (in a sweep: --retry "
-                        "failed) to restart the run",
+                        "%s: the journal %s is damaged, because no run stores a record like its generation %d. Use "
+                        "--restart (in a sweep: --retry failed) to restart the run",
                         s->f.out.path, s->f.journal.path, generation);
     o->is_fresh = false; /* the generation of the record has been ranked */
     hf_generations_add(g, &o->population, NULL);
@@ -225,8 +226,8 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
     hf_generations_write(io, &s->rows);
     if (io->status == HF_OK && b.n_taken < s->n_journal)
         hf_warning(io->messages,
-                   "%s: this machine or build computes other designs than the one that began the run. Generations %d "
-                   "to %d, which were not published, are evaluated again",
+                   "%s: this machine or build computes other designs than the machine or build that began the run. "
+                   "hifdm evaluates the unpublished generations %d to %d again",
                    s->f.out.path, first + 1, first + s->n_journal - b.n_taken);
     s->n_journal = 0;
 }
@@ -403,7 +404,7 @@ hf_status hf_store_recover(const char *path, hf_summary *summary, hf_messages *m
 {
     HF_TRY(hf_store_read_summary(path, summary, messages));
     if (summary->finished) {
-        hf_warning(messages, "%s: is finished: there is nothing to recover", path);
+        hf_warning(messages, "%s: this result is finished, so there is nothing to recover", path);
         return HF_OK;
     }
     stored_search *a = calloc(1, sizeof *a);

@@ -306,10 +306,10 @@ static hf_status refuse(const hf_frame *f, int row, hf_messages *messages)
         n_support += t->fixed[i] != 0;
     hf_truss_describe(t, false, dof / HF_TRUSS_DOF, where, sizeof where);
     if (n_support == 0)
-        return hf_error(messages, HF_MECHANISM, "%s can %s without force: no node of the truss is supported", where,
-                        direction[dof % HF_TRUSS_DOF]);
+        return hf_error(messages, HF_MECHANISM, "%s can %s without force, because no node of the truss is supported",
+                        where, direction[dof % HF_TRUSS_DOF]);
     return hf_error(messages, HF_MECHANISM,
-                    "%s can %s without force: the truss is a mechanism, or not held by enough supports; add members or "
+                    "%s can %s without force, because the truss is a mechanism or has too few supports. Add members or "
                     "supports, or join members rigidly",
                     where, direction[dof % HF_TRUSS_DOF]);
 }
@@ -355,7 +355,7 @@ static hf_status build(const hf_truss *truss, int *row_of_dof, int *order, hf_fr
     f->half_bandwidth = find_half_bandwidth(f, row_of_dof);
     if (f->n_dof == 0) return hf_error(messages, HF_BAD_CASE, "truss: every node is supported, so nothing can deform");
     if ((double)f->n_dof * (f->half_bandwidth + 1.0) > INT_MAX)
-        return hf_error(messages, HF_NO_MEMORY, "the stiffness matrix of %d rows, half-bandwidth %d is too large",
+        return hf_error(messages, HF_NO_MEMORY, "the stiffness matrix with %d rows and half-bandwidth %d is too large",
                         f->n_dof, f->half_bandwidth);
     size_t m = (size_t)truss->n_member, n_dof = (size_t)f->n_dof;
     if (HF_ARENA_ARRAYS(&f->block, HF_ARRAY(f->row_of_dof, HF_TRUSS_DOF * (size_t)truss->n_node),

@@ -167,7 +167,8 @@ hf_status hf_truss_ring_generate(const hf_truss_settings *settings, const hf_par
     free(rim_m);
     if (status != HF_OK) return hf_error(messages, status, "truss: out of memory for a ring of %d joints", 2 * g.n);
     if (is_whole) return HF_OK;
-    return hf_error(messages, HF_BAD_CASE,
-                    "truss.ring.cells_per_bay: %d must divide the %d cells at the rim into at least three bays",
-                    g.cells, g.n);
+    return hf_error(
+        messages, HF_BAD_CASE,
+        "truss.ring.cells_per_bay: bays of %d cells must divide the rim of %d cells into at least three equal parts",
+        g.cells, g.n);
 }

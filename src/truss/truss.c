@@ -74,8 +74,8 @@ hf_status hf_truss_attach(const hf_truss *t, const hf_scene *scene, double toler
         double gap = hf_distance(p, t->position_m + 3 * (size_t)nearest);
         if (!(gap <= tolerance_m) && ++n_fault <= HF_FAULT_MAX)
             hf_error(messages, HF_BAD_CASE,
-                     "truss: net support '%s' has no attachment: the nearest truss node, '%s', is %.3g m away, but "
-                     "truss.match_tolerance_m is %g m",
+                     "truss: net support '%s' has no attachment, because the nearest truss node '%s' is %.3g m away. "
+                     "The maximum distance truss.match_tolerance_m is %g m",
                      scene->node_id[i], t->node_id[nearest], gap, tolerance_m);
         scene_node[*n_attachment] = i;
         truss_node[(*n_attachment)++] = nearest;
@@ -139,6 +139,6 @@ hf_status hf_truss_check(const hf_truss *t, hf_messages *messages)
     }
     for (int e = 0; e < t->n_member && n_fault <= HF_FAULT_MAX; e++)
         check_member(t, e, &n_fault, messages);
-    if (n_fault > HF_FAULT_MAX) hf_error(messages, HF_BAD_CASE, "truss: there are more faults like these");
+    if (n_fault > HF_FAULT_MAX) hf_error(messages, HF_BAD_CASE, "truss: hifdm found more faults in the truss");
     return n_fault ? HF_BAD_CASE : HF_OK;
 }

@@ -339,11 +339,11 @@ START_TEST(the_design_is_that_of_a_result)
     assert_nothing_is_wrong(path, result, "1e-9");
     const char *measured = temp("m.csv");
     HIFDM(2, "adjust", path, "--measured", measured);
-    ERR("has a section optimize. Use --result FILE with the result from which the net was cut");
+    ERR("the case has an `optimize` section, so --result FILE must give the result from which the cables were cut");
     HIFDM(2, "adjust", path, "--measured", measured, "--stage", "refine");
-    ERR("--stage needs --result FILE with a result of this case, except --stage form");
+    ERR("the --stage option needs --result FILE with a result of this case. Only --stage form works without a result");
     HIFDM(0, "adjust", path, "--measured", measured, "--stage", "form");
-    ERR("or the net has another design");
+    ERR("or another design of the net");
     const char *page = temp("moves.html");
     HIFDM(0, "adjust", path, "--measured", measured, "--result", result, "--report", page);
     OUT("report page: ");
@@ -356,14 +356,14 @@ START_TEST(the_design_is_that_of_a_result)
     HIFDM(5, "adjust", path, "--measured", measured, "--result", result, "--report", result, "--force");
     ERR("an input of this run");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--report", "a", "-o", "a");
-    ERR("-o and --report both name a: use different names");
+    ERR("the options -o and --report both name the file a. Use different names");
     HIFDM(2, "adjust", path, "--measured", measured, "--stage", "form", "--report", page, "--force");
     ERR("needs --result FILE with the result of this case");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--stage", "search");
     ERR("this run has no search shape");
     HIFDM(2, "adjust", path, "--measured", measured, "--result", result, "--set", "scene.EA_inner_N=46000");
     ERR("this result belongs to another net than");
-    ERR("they differ in EA of cables");
+    ERR("The difference is in EA of cables");
     HIFDM(5, "adjust", path, "--measured", measured, "--result", measured);
     HIFDM(5, "adjust", path, "--measured", measured, "--result", result, "-o", result, "--force");
     ERR("an input of this run");
@@ -382,7 +382,7 @@ START_TEST(bad_tables_are_named)
     ERR("'n1_1'");
     bad = measured_with("m.csv", HEADER, in_mm, "");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERR("the positions seem to be in mm; x_m, y_m and z_m must be in m");
+    ERR("the positions seem to be in mm, but the columns x_m, y_m and z_m must be in m");
     bad = measured_with("m.csv", HEADER, turned, "");
     HIFDM(2, "adjust", path, "--measured", bad);
     ERR("a rotation by 36.87 degrees explain all but");
@@ -392,15 +392,15 @@ START_TEST(bad_tables_are_named)
     ERR("is 300 mm from its position in the design");
     bad = measured_with("m.csv", HEADER, two_nodes, "");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERR("has positions of 2 free nodes, but at least 3 are needed");
+    ERR("the file has positions of 2 free nodes, but hifdm needs at least 3 positions");
     HIFDM(2, "adjust", path, "--measured", file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,-1\nn2_2,0,0,zero,1\n"));
     ERR("sigma_m must be above zero");
     bad = file_with("m.csv", HEADER ",sigma_m\nn1_1,0,0,0,1e-12\nn1_2,0,0,0,1\nn1_3,0,0,0,1\n");
     HIFDM(2, "adjust", path, "--measured", bad);
-    ERRS("%s:2: sigma_m of 1e-12 m is too small for cable errors of 0.0001 m", bad);
+    ERRS("%s:2: the value sigma_m of 1e-12 m is too small for cable errors of 0.0001 m", bad);
     HIFDM(2, "adjust", path, "--measured", temp("missing.csv"));
     HIFDM(2, "adjust", path);
-    ERR("needs --measured FILE");
+    ERR("needs the option --measured FILE");
 }
 END_TEST
 
@@ -421,15 +421,15 @@ START_TEST(doubtful_tables_are_told)
     ck_assert_ptr_null(strstr(said.err, "do not fit"));
     ck_assert_ptr_null(strstr(said.out, "do not trust"));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5");
-    ERR("these positions do not fit the net and its tolerances: chi^2 is ");
-    ERR("The worst node is '");
+    ERR("these positions do not fit the net and its tolerances, because chi^2 is ");
+    ERR("The worst node '");
     ck_assert_ptr_eq(strstr(said.out, "the measurement does not fit this net: do not trust the adjustments below"),
                      said.out);
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=3e-5", "--json");
     OUT("\"fits\": false");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=1e-5", "-o", temp("none.csv"));
-    ERR("this measurement does not belong to this net: chi^2 is ");
-    ERR("The worst node is '");
+    ERR("this measurement does not belong to this net, because chi^2 is ");
+    ERR("The worst node '");
     ck_assert(!is_there(temp("none.csv")));
     HIFDM(0, "adjust", path, "--measured", measured, "--set", "adjust.sigma_m=0.1");
     ERR("makes these positions almost useless");
@@ -498,10 +498,10 @@ START_TEST(bad_cases_are_named)
 {
     const char *measured = measured_with("m.csv", HEADER, NULL, "");
     HIFDM(2, "adjust", file_with("case.yaml", EA_SCENE), "--measured", measured);
-    ERR("has no section adjust");
+    ERR("the case has no `adjust` section");
     ERR("has no section tolerance");
     HIFDM(2, "adjust", file_with("case.yaml", SMALL_SCENE SECTIONS), "--measured", measured);
-    ERR("have no EA");
+    ERR("have no stiffness EA");
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.range_m=5e-5");
     ERR("adjust.range_m: is smaller than adjust.step_m, which allows no move at all");
@@ -512,10 +512,10 @@ START_TEST(bad_cases_are_named)
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.set=struts");
     ERR("adjust.set");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "adjust.figure=surface");
-    ERR("surface needs a target surface: add a section surface");
+    ERR("the value surface needs a target surface. Add a `surface` section");
     HIFDM(2, "adjust", path, "--measured", measured, "--set", "tolerance.sigma_cut_m=0", "--set",
           "tolerance.sigma_support_m=1e-4");
-    ERR("no cable has errors to estimate");
+    ERR("the section defines no cable errors that hifdm can estimate");
     HIFDM(2, "adjust",
           file_with("case.yaml", EA_SCENE "tolerance: {sigma_cut_m: 0.0001}\n"
                                           "adjust: {set: inner, range_m: 0.002, step_m: 0.0001}\n"),

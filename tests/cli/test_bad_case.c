@@ -127,30 +127,31 @@ START_TEST(rows_that_the_net_cannot_serve_have_their_places)
                                         "  objective: [{figure: psi},\n"
                                         "    {figure: tension, set: tie, target: 1}, {figure: facets}]\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
-    ERRS("error: %s:6:13: optimize.variables.0.set: there is no set of cables 'egde'; did you mean 'edge'?\n", path);
-    ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is already varied by row 1\n", path);
-    ERRS("error: %s:11:26: optimize.variables.3.vary: cable 'n1_0-n1_1' of set inner has law tension: only cables of "
-         "law elastic have an unstressed length\n",
+    ERRS("error: %s:6:13: optimize.variables.0.set: this net has no cable set 'egde'; did you mean 'edge'?\n", path);
+    ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is already a design variable of row 1\n", path);
+    ERRS("error: %s:11:26: optimize.variables.3.vary: cable 'n1_0-n1_1' of set inner has the law tension, but only "
+         "cables with the law elastic have an unstressed length\n",
          path);
-    ERRS("error: %s:13:16: optimize.limits.0.figure: deflection needs a truss, because it limits the deflection of "
-         "attachments\n",
+    ERRS("error: %s:13:16: optimize.limits.0.figure: a deflection limit needs a truss, because this limit applies to "
+         "the attachments of a truss\n",
          path);
-    ERRS("error: %s:14:28: optimize.limits.1.set: there is no set of cables 'diagonal'; this net has all, ", path);
-    ERRS(
-        "error: %s:16:28: optimize.objective.1.set: there is no set of cables 'tie'; this net has all, inner, boundary",
-        path);
+    ERRS("error: %s:14:28: optimize.limits.1.set: this net has no cable set 'diagonal'. The sets of this net are all, ",
+         path);
+    ERRS("error: %s:16:28: optimize.objective.1.set: this net has no cable set 'tie'. The sets of this net are all, "
+         "inner, boundary",
+         path);
     ERRS("error: %s:16:45: optimize.objective.2: facets: needs a target surface: add a section surface", path);
     ck_assert_int_eq(count_of(said.err, "\n"), 7);
     ck_assert(!is_there(temp("c.h5")));
     HIFDM(2, "check", path, "--set", "optimize.objective=[{figure: evenness, set: tie}]", "--set",
           "optimize.variables.0.set=edgy");
-    ERR("error: --set optimize.objective.0.set: there is no set of cables 'tie'");
-    ERR("error: --set optimize.variables.0.set: there is no set of cables 'edgy'; did you mean 'edge'?\n");
+    ERR("error: --set optimize.objective.0.set: this net has no cable set 'tie'");
+    ERR("error: --set optimize.variables.0.set: this net has no cable set 'edgy'; did you mean 'edge'?\n");
     path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
                                            "  variables: [{set: edge, vary: length, range: 1 %, bounds: [9, 10]}]\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     ERRS("error: %s:4:15: optimize.variables.0: 'n0_0-n1_0' has ", path);
-    ERR(" m after form-finding; its range around this value does not overlap its bounds\n");
+    ERR(" m after form-finding. The range around this value does not overlap the bounds of the design variable\n");
 }
 END_TEST
 
@@ -207,7 +208,7 @@ START_TEST(what_is_no_file_is_told)
     HIFDM(2, "run", temp("missing.yaml"), NOWHERE);
     ERRS("error: %s: cannot open: No such file or directory\n", temp("missing.yaml"));
     HIFDM(2, "run", temp("."), NOWHERE);
-    ERR(": is a folder; name a regular file\n");
+    ERR(": this is a folder. Give the name of a regular file\n");
     HIFDM(2, "run", "", NOWHERE);
     ERR("error: ");
     HIFDM(2, "check",
@@ -216,7 +217,7 @@ START_TEST(what_is_no_file_is_told)
     ERR("YAML: control characters are not allowed\n");
     SHELL(0, "head -c 2000000 /dev/zero | tr '\\0' x >\"$1\"; rm \"$2\"", temp("long.yaml"), temp("binary.yaml"));
     HIFDM(2, "check", temp("long.yaml"));
-    ERR("is not a case file, because it is longer than 1024 kB\n");
+    ERR("this file is larger than 1024 kB, so it is not a case file\n");
     SHELL(0, "rm \"$1\"", temp("long.yaml"));
     SHELL(2, "\"$0\" check - </dev/null"); /* '-' is a file name like any other */
     ERR("error: -: cannot open: No such file or directory\n");
@@ -259,10 +260,10 @@ START_TEST(what_is_no_ordinary_file_is_refused)
     const char *folder = temp("");
     make_readers();
     SHELL(0, "cd \"$1\" && mkfifo pipe && mkdir folder && truncate -s 1073741825 long", folder);
-    static const char *const file[][2] = {{"pipe", "is a pipe; name a regular file"},
-                                          {"folder", "is a folder; name a regular file"},
-                                          {"/dev/zero", "is a device; name a regular file"},
-                                          {"long", "is longer than 1024 MB"}};
+    static const char *const file[][2] = {{"pipe", "this is a pipe. Give the name of a regular file"},
+                                          {"folder", "this is a folder. Give the name of a regular file"},
+                                          {"/dev/zero", "this is a device. Give the name of a regular file"},
+                                          {"long", "this file is larger than 1024 MB"}};
     SHELL(0, read_it, folder, file[_i][0], file[_i][1]);
     ck_assert_str_eq(said.out, "");
 }

@@ -59,15 +59,15 @@ static const struct {
      "error: @nodes.csv:1: there is a header, but no rows\n"
      "error: @cables.csv:1: the file is empty: a header line is needed\n"},
     {"id,x_m,y_m,z_m,role\na,0,0,0,support\nb,1,0,0,support\n", "id,i,j,group,law,value\nab,a,b,inner,tension,1\n",
-     "error: scene: every node is a support, so there is no shape to find\n"},
+     "error: scene: the net has no free nodes, because every node is a support\n"},
     {"id,x_m,y_m,z_m,role\na,0,0,0,inner\nb,1,0,0,inner\n", "id,i,j,group,law,value\nab,a,b,inner,tension,1\n",
-     "error: scene: no node has the role 'support', so nothing holds the net; give that role to the nodes that do not "
-     "move\n"},
+     "error: scene: no node has the role 'support', so the net has no supports. Give the role 'support' to the nodes "
+     "that do not move\n"},
     /* names of one's own */
     {NODES, "Name,From,To,group,law,value\nac,a,c,inner,tension,10\n",
      "warning: @cables.csv:1: column 'Name' is not used\n"
      "error: @cables.csv:1: the first line has to name the columns: id,i,j,group,law,value; missing are id,i,j\n"},
-    {"\xff\xfei", CABLES, "error: @nodes.csv: UTF-16 text; save the file as CSV UTF-8\n"},
+    {"\xff\xfei", CABLES, "error: @nodes.csv: this file contains UTF-16 text. Save the file as CSV UTF-8\n"},
     {"id,x_m,y_m,z_m,role\na,0,0,0,support\rb,1,0,0,support\n", CABLES,
      "error: @nodes.csv:2: a carriage return within the line; lines end with LF or CRLF\n"},
     {NODES "\x01,1,2,0,inner\n", CABLES,
@@ -85,7 +85,7 @@ static const struct {
      "points\nerror: @nodes.csv:5: 3 fields where the header has 5\n"},
     {NODES "e,\"1,5\",\"2,5\",\"0,1\",inner\n", CABLES,
      "error: @nodes.csv:6: 'e': x_m has a decimal comma, and numbers have points: 1,5\nerror: @nodes.csv: 2 more "
-     "numbers have decimal commas\n"},
+     "numbers have decimal commas instead of decimal points\n"},
     /* that cables name the node `e` may be a consequence, and is told once; the node `f` is another matter */
     {NODES "d,5,5,5,inner\n", CABLES "ce,c,e,inner,tension,10\nde,d,e,inner,tensoin,10\ncf,c,f,inner,tension,10\n",
      "error: @nodes.csv:6: 'd': this id was used before, on line 5\n"
@@ -140,7 +140,7 @@ START_TEST(long_lists_of_faults_are_cut)
         snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "x%d,a,c,inner,tension,zero\n", i);
     HIFDM(2, "check", net_with(NODES, cables));
     ck_assert_int_eq(count_of(said.err, "value must be a finite number, not zero"), 20);
-    ERR("cables.csv: there are 40 more faults\n");
+    ERR("cables.csv: hifdm found 40 more faults in this file\n");
 }
 END_TEST
 
@@ -208,9 +208,8 @@ START_TEST(an_open_range_is_for_derivatives_alone)
         file_with("open.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n"
                                "optimize: {variables: [{set: all, vary: force_density, bounds: [1, .inf]}]}\n");
     HIFDM(2, "run", c, "-o", temp("open.h5"));
-    ERRS("error: %s:3:24: optimize.variables.0: 'ab' has no bound on one side; the genetic algorithm needs a range or "
-         "both "
-         "bounds (method: lm does not)\n",
+    ERRS("error: %s:3:24: optimize.variables.0: the design variable 'ab' has no bound on one side. Add the missing "
+         "bound or a range for the genetic algorithm, or use optimize.method: lm\n",
          c);
     HIFDM(0, "run", c, "-o", temp("lm.h5"), "--set", "optimize.method=lm");
 }
@@ -226,7 +225,7 @@ START_TEST(a_shape_with_a_slack_boundary_cable_is_kept)
     const char *c = file_with("slack.yaml", "scene:\n  import: {nodes: nodes.csv, cables: cables.csv}\n" SMALL_GA);
     HIFDM(3, "run", c, "-o", path);
     ERR("error: optimize: boundary cable 'bc' has no tension after form-finding, so the search cannot start. Use a "
-        "shorter length for this cable");
+        "shorter length or a law that keeps this cable taut");
     OUT("\n  form          ");
     EXPECT(path, "--", "a.attrs['finished'] == 1", "a['form/tension_N'].shape == (5,)", "'search' not in a",
            "'ga' not in a");

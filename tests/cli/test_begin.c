@@ -117,24 +117,24 @@ START_TEST(nothing_is_replaced)
 {
     const char *table = file_with("mine_cables.csv", "precious\n"), *mine = temp("mine");
     HIFDM(5, "new", mine, "--import");
-    ERRS("error: %s exists and is not replaced", table);
+    ERRS("error: the file %s already exists", table);
     ck_assert(!is_there(temp("mine.yaml")) && !is_there(temp("mine_nodes.csv")));
     char *text = read_file(table, NULL);
     ck_assert_str_eq(text, "precious\n");
     free(text);
     HIFDM(0, "new", mine);
     HIFDM(5, "new", mine, "--cylinder");
-    ERRS("error: %s.yaml exists and is not replaced", mine);
+    ERRS("error: the file %s.yaml already exists", mine);
     static const char *const bad[] = {"a b", "../.x", "-", "folder/", "q'", "@", "\xc3\xa9"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         HIFDM(2, "new", keep(formatted("%s/%s", temp("x"), bad[i])));
-        ERR("the name of a new case has letters, digits");
+        ERR("the name of a new case may contain only letters, digits");
     }
     HIFDM(2, "new", temp("two"), "--paraboloid", "--cylinder");
-    ERR("--cylinder cannot be combined with the export given before it");
+    ERR("the option --cylinder cannot be combined with the export option before it");
     ck_assert(!is_there(temp("two.yaml")));
     HIFDM(2, "new");
-    ERR("'hifdm new' needs a NAME");
+    ERR("'hifdm new' needs the argument NAME");
 }
 END_TEST
 
@@ -288,7 +288,7 @@ START_TEST(explain_helps_with_slips)
     HIFDM(0, "explain", "straight_chain");
     OUT("straight_chain (status; exit status 4)\n    A straight chain of cables with fixed lengths");
     OUT("\n    What to do: Set a scallop");
-    HIFDM(0, "explain", "warning: slack cables in the form-finding shape (1): c7");
+    HIFDM(0, "explain", "warning: these cables of the form-finding shape are slack (1): c7");
     OUT("slack_cables (warning)\n");
     ck_assert_int_eq(count_of(said.out, "("), 1);
     static const char *const as_said[][2] = {
@@ -319,7 +319,7 @@ START_TEST(explain_helps_with_slips)
     EXPECT(quoted, file_with("plain.txt", said.out), "--", "a == b");
     HIFDM(2, "explain", "drift gobbledygook");
     OUT("drift (term)\n");
-    ERR("there is no entry 'gobbledygook'; ");
+    ERR("the glossary has no entry 'gobbledygook'. ");
     HIFDM(0, "explain", "good to"); /* names of earlier versions */
     ck_assert_int_eq(count_of(said.out, "1 dB gain loss (term)\n"), 1);
     HIFDM(0, "explain", "good_to_Hz");
@@ -338,11 +338,11 @@ START_TEST(explain_helps_with_slips)
     HIFDM(0, "explain", "tolerance.require.at_most");
     OUT("tolerance.require.at_most (key of the case file");
     HIFDM(2, "explain", "best", "fitt");
-    ERR("there is no entry 'best fitt'; did you mean 'best fit'?");
+    ERR("the glossary has no entry 'best fitt'; did you mean 'best fit'?");
     HIFDM(2, "explain", "rope");
-    ERR("there is no entry 'rope'; 'hifdm explain' lists all entries");
+    ERR("the glossary has no entry 'rope'. 'hifdm explain' lists all entries");
     HIFDM(2, "explain", "residul_N");
-    ERR("there is no entry 'residul_N'; did you mean 'residual_N'?");
+    ERR("the glossary has no entry 'residul_N'; did you mean 'residual_N'?");
     HIFDM(2, "explain", "gobbledygook");
     ERR("'hifdm explain' lists all entries");
 }

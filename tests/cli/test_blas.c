@@ -144,11 +144,11 @@ START_TEST(no_lapack)
           "for l in liblapack.so.3 libopenblas.so.0; do cc -shared -fPIC a.c -o $l; done",
           folder);
     SHELL(5, "LD_LIBRARY_PATH=\"$1\" \"$0\" run \"$2\" -o \"$3\" --quiet", folder, case_file, result);
-    ERR("error: LAPACK cannot be loaded: liblapack.so.3 has not all routines that are needed; libopenblas.so.0 has not "
-        "all routines that are needed. Install it (Debian: liblapack3)\n");
+    ERR("error: hifdm cannot load LAPACK: liblapack.so.3 has not all routines that are needed; libopenblas.so.0 has "
+        "not all routines that are needed. Install it (Debian: liblapack3)\n");
     ck_assert(!is_there(result));
     SHELL(5, "LD_LIBRARY_PATH=\"$1\" \"$0\" sweep \"$2\" --dir \"$3\" --quiet", folder, study, points);
-    ERR("error: LAPACK cannot be loaded: ");
+    ERR("error: hifdm cannot load LAPACK: ");
     HIFDM(0, "status", study, "--dir", points, "--json");
     OUT("\"failed\": 0");
     HIFDM(0, "run", case_file, "-o", result, "--quiet");

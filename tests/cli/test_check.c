@@ -4,7 +4,7 @@
 START_TEST(check_tells_what_will_run)
 {
     HIFDM(0, "check", CHEN, "--threads", "2");
-    ERR("warning: stop: rms_change ended before equilibrium"); /* what the run will warn of */
+    ERR("warning: the stopping rule rms_change ended the iteration before equilibrium"); /* what the run will warn of */
     OUT("straight-edges.yaml: valid\n");
     OUT("121 nodes: 36 supports, 25 inner (psi counts these), 60 edge\n");
     OUT("220 cables by law in force: 100 tension, 120 length, 0 force density\n");
@@ -127,7 +127,7 @@ START_TEST(check_announces_no_ga_without_genes)
     ck_assert_msg(!strstr(said.out, "0 variables"), "%s", said.out);
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE SMALL_GA), "-o", temp("c.h5"), "--set",
           "scene.parabolic_cylinder.supports=perimeter");
-    ERR("warning: optimize: skipped, because no boundary cable has a free end");
+    ERR("warning: optimize: hifdm skips the optimisation, because no boundary cable has a free end");
 }
 END_TEST
 
@@ -230,14 +230,14 @@ START_TEST(show_refuses_what_is_no_result)
     HIFDM(5, "show", temp("missing.h5"));
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "show", REFLECTOR);
-    ERR("reflector.yaml: is not a result file (HDF5) but a case. `hifdm check ");
+    ERR("reflector.yaml: this file is not a result file (HDF5) but a case. To check this file, use `hifdm check ");
     HIFDM(5, "show", temp("."));
-    ERR("is a folder, not a result file");
+    ERR("this is a folder, not a result file");
     const char *const make_other[] = {python_program(), "-c", "import h5py, sys; h5py.File(sys.argv[1], 'w')['x'] = 1",
                                       temp("other.h5"), NULL};
     demand_exit(run_command(HANG_S, make_other), 0, "make an HDF5 file", __LINE__);
     HIFDM(5, "show", temp("other.h5"));
-    ERR("other.h5: is an HDF5 file, but it is damaged or not a result of hifdm");
+    ERR("other.h5: this HDF5 file is damaged or is not a result of hifdm");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("whole.h5"));
     SHELL(0, "head -c 5000 <\"$1\" >\"$2\"", temp("whole.h5"), temp("half.h5"));
     HIFDM(5, "show", temp("half.h5"));
@@ -277,9 +277,8 @@ START_TEST(a_net_without_facets_says_why)
     "id,i,j,group,law,value\nam,a,m,inner,tension,10\ndm,d,m,inner,tension,10\nbn,b,n,inner,tension,10\n"              \
     "cn,c,n,inner,tension,10\nmn,m,n,inner,tension,10\n"
 #define SURFACE "--set", "surface.kind=paraboloid", "--set", "surface.focal_length_m=5"
-    const char *cross =
-        "warning: surface: seen along z, cables of the surface cross without a common node, so there are no facets to "
-        "measure\n";
+    const char *cross = "warning: surface: as seen along the z axis, cables of the surface cross without a common "
+                        "node, so hifdm cannot find the facets\n";
     HIFDM(0, "check", net_with(nodes, STAR), SURFACE);
     ck_assert_ptr_null(strstr(said.err, cross));
     HIFDM(0, "check", net_with(nodes, STAR "bm,b,m,inner,tension,1\nan,a,n,inner,tension,1\n"), SURFACE);

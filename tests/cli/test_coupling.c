@@ -125,11 +125,11 @@ END_TEST
 START_TEST(a_truss_that_is_too_soft_is_named)
 {
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5");
-    ERR("error: the truss is too soft for the coupling with its net: after ");
+    ERR("error: the truss is too soft for the coupling with its net. After ");
     ERR(" an attachment still moves without bound. Stiffen the truss (truss.E_Pa and its tubes), lower "
         "form.pretension_N, or solve both in one matrix: coupling.scheme: auto, form.method: newton");
     HIFDM(4, "run", TRUSS, NOWHERE, "--set", "truss.E_Pa=1e5", "--set", "form.method=newton");
-    ERR("error: the truss is too soft for its net: net and truss together have no equilibrium. Stiffen the truss "
+    ERR("error: the truss is too soft for its net, so net and truss together have no equilibrium. Stiffen the truss "
         "(truss.E_Pa and its tubes) or lower form.pretension_N");
     ck_assert(!is_there(temp("nowhere.h5")));
 }

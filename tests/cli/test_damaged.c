@@ -62,16 +62,19 @@ START_TEST(a_crash_of_hdf5_names_the_file)
     HIFDM(0, "run", c, "-o", a, "--quiet");
     HIFDM(0, "run", c, "-o", b, "--quiet");
     SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "1", a, b);
-    ERRS("error: %s: is damaged: the process that read it was ended by signal 6 (Aborted), beside %s\n", a, b);
+    ERRS("error: %s: this file is damaged. The process that read the file was ended by signal 6 (Aborted), beside %s\n",
+         a, b);
     SHELL(5, WITH_LIBRARY "exec \"$0\" diff \"$3\" \"$4\"", library, "2", a, b);
-    ERRS("error: %s: is damaged: the process that read it was ended by signal 6 (Aborted), beside %s\n", b, a);
+    ERRS("error: %s: this file is damaged. The process that read the file was ended by signal 6 (Aborted), beside %s\n",
+         b, a);
     SHELL(5, WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a, temp("page.html"));
-    ERRS("error: %s: is damaged: the process that read it was ended by signal 6", a);
+    ERRS("error: %s: this file is damaged. The process that read the file was ended by signal 6", a);
     ck_assert(!is_there(temp("page.html")));
     SHELL(5, WITH_LIBRARY "exec \"$0\" export \"$3\" --csv \"$4\"", library, "9", a, temp("csv"));
-    ERRS("error: %s: is damaged: the process that read it was ended by signal 6", a);
+    ERRS("error: %s: this file is damaged. The process that read the file was ended by signal 6", a);
     SHELL(5, WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "5", unfinished(a), c);
-    ERRS("error: %s: exists and is damaged: the process that read it was ended by signal 6 (Aborted); use --restart",
+    ERRS("error: %s: this file exists and is damaged. The process that read the file was ended by signal 6 (Aborted). "
+         "Use --restart",
          a);
     HIFDM(0, "diff", b, b);
     OUT(" 0 differ;");
@@ -101,10 +104,12 @@ START_TEST(a_read_without_end_is_ended)
     const char *library = make_library(), *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *a = temp("a.h5");
     HIFDM(0, "run", c, "-o", a, "--quiet");
     SHELL(5, "export LOOP=1; " WITH_LIBRARY "exec \"$0\" export \"$3\" --csv \"$4\"", library, "4", a, temp("csv"));
-    ERRS("error: %s: is damaged: the process that read it was ended by signal 24 (CPU time limit exceeded)\n", a);
+    ERRS("error: %s: this file is damaged. The process that read the file was ended by signal 24 (CPU time limit "
+         "exceeded)\n",
+         a);
     SHELL(5, "export LOOP=1; " WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "1", unfinished(a), c);
-    ERRS("error: %s: exists and is damaged: the process that read it was ended by signal 24 (CPU time limit "
-         "exceeded); use --restart",
+    ERRS("error: %s: this file exists and is damaged. The process that read the file was ended by signal 24 (CPU time "
+         "limit exceeded). Use --restart",
          a);
 }
 END_TEST
@@ -128,8 +133,9 @@ START_TEST(a_damaged_point_stops_no_other)
     HIFDM(3, "sweep", study, "--dir", folder, "--quiet");
     HIFDM(0, "status", study, "--dir", folder);
     OUT("done      1\n  failed    1\n");
-    OUT(formatted("%s: exists and is cut off: a truncated HDF5 file; use --restart (in a sweep: --retry failed)",
-                  point));
+    OUT(formatted(
+        "%s: this file exists and is cut off: a truncated HDF5 file. Use --restart (in a sweep: --retry failed)",
+        point));
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet", "--retry", "failed");
     HIFDM(0, "show", point);
 }
@@ -157,7 +163,7 @@ START_TEST(damage_that_is_found_late_is_no_fault_of_the_machine)
     SHELL(0, spoil, python_program(), unfinished(a));
     for (int i = 0; i < 2; i++) {
         HIFDM(5, "run", c, "-o", a, "--quiet");
-        ERR("is damaged or of another version; use --restart ");
+        ERR("this file is damaged or belongs to another version of hifdm. Use --restart ");
     }
     HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
     SHELL(0, "rm \"$1\"/*.tsv; ls \"$1\"/*.h5 | head -1", folder);
@@ -188,7 +194,8 @@ START_TEST(a_crash_in_a_sweep_fails_its_point)
     SHELL(3, WITH_LIBRARY "exec \"$0\" sweep \"$3\" --dir \"$4\" --quiet", library, "16", study, folder);
     HIFDM(0, "status", study, "--dir", folder);
     OUT("done      1\n  failed    1\n");
-    OUT(formatted("%s: exists and is damaged: the process that read it was ended by signal 6 (Aborted); use --restart",
+    OUT(formatted("%s: this file exists and is damaged. The process that read the file was ended by signal 6 "
+                  "(Aborted). Use --restart",
                   point));
 }
 END_TEST
@@ -200,11 +207,11 @@ START_TEST(a_reader_that_is_killed_blames_no_file)
     HIFDM(0, "run", c, "-o", a, "--quiet");
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" report \"$3\" -o \"$4\"", library, "3", a,
           temp("page.html"));
-    ERRS("error: %s: the process that read it was ended by signal 9 (Killed); is there enough memory, and time "
+    ERRS("error: %s: the process that read this file was ended by signal 9 (Killed); is there enough memory, and time "
          "(ulimit -t)?\n",
          a);
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" run \"$4\" -o \"$3\"", library, "5", unfinished(a), c);
-    ERRS("error: %s: the process that read it was ended by signal 9 (Killed); is there enough memory, and time "
+    ERRS("error: %s: the process that read this file was ended by signal 9 (Killed); is there enough memory, and time "
          "(ulimit -t)?\n",
          a);
     const char *study = file_with("s.yaml", STUDY), *folder = temp("s.d");
@@ -215,8 +222,8 @@ START_TEST(a_reader_that_is_killed_blames_no_file)
     /* As above, only the reader of the unfinished point gets as far as that. */
     SHELL(5, "export KILLED=1; " WITH_LIBRARY "exec \"$0\" sweep \"$3\" --dir \"$4\" --quiet", library, "16", study,
           folder);
-    ERRS(": %s: the process that read it was ended by signal 9 (Killed); is there enough memory, and time (ulimit "
-         "-t)?\n",
+    ERRS(": %s: the process that read this file was ended by signal 9 (Killed); is there enough memory, and time "
+         "(ulimit -t)?\n",
          point);
     HIFDM(0, "status", study, "--dir", folder, "--json");
     OUT("\"failed\": 0");
@@ -236,8 +243,8 @@ START_TEST(a_merge_survives_what_it_would_replace)
     HIFDM(0, "run", temp("c.yaml"), "-o", merged, "--quiet");
     SHELL(0, "mkdir \"$1\" && cp \"$2\" \"$2.mine\"", folder, merged);
     SHELL(5, WITH_LIBRARY "exec \"$0\" merge \"$3\" --dir \"$4\" -o \"$5\"", library, "1", study, folder, merged);
-    ERRS("error: %s: exists and is damaged: the process that read it was ended by signal 6 (Aborted); use --force to "
-         "replace it or -o",
+    ERRS("error: %s: this file exists and is damaged. The process that read the file was ended by signal 6 (Aborted). "
+         "Use --force to replace the file, or use -o",
          merged);
     SHELL(0, "cmp \"$1\" \"$1.mine\"", merged);
     SHELL(0, WITH_LIBRARY "exec \"$0\" merge \"$3\" --dir \"$4\" -o \"$5\" --force", library, "1", study, folder,

@@ -50,11 +50,11 @@ START_TEST(what_is_no_file_is_named)
     HIFDM(0, "run", c, "-o", a, "--quiet");
     SHELL(0, "mkfifo \"$1\"", pipe);
     HIFDM(5, "diff", a, pipe);
-    ERRS("error: %s: is not a result of hifdm, because it is not an HDF5 file\n", pipe);
+    ERRS("error: %s: this file is not a result of hifdm, because it is not an HDF5 file\n", pipe);
     HIFDM(5, "diff", pipe, a);
-    ERRS("error: %s: is not a result of hifdm, because it is not an HDF5 file\n", pipe);
+    ERRS("error: %s: this file is not a result of hifdm, because it is not an HDF5 file\n", pipe);
     HIFDM(5, "diff", a, temp(""));
-    ERR("is a folder, not a result file\n");
+    ERR("this is a folder, not a result file\n");
     HIFDM(5, "diff", a, temp("none.h5"));
     ERRS("error: %s: cannot open: No such file or directory\n", temp("none.h5"));
 }

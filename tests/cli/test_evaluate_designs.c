@@ -68,8 +68,8 @@ END_TEST
 START_TEST(a_net_without_the_symmetry_is_refused)
 {
     HIFDM(2, "run", net_with(nodes, cables), NOWHERE, "--set", "optimize.symmetry=xy");
-    ERR("error: --set optimize.symmetry: the net is not symmetric about the plane y = 1.5 m: 4 cables have no mirror "
-        "image (ends, roles, loads, group, law and target): c1, c,2, c3, c4\n");
+    ERR("error: --set optimize.symmetry: the net is not symmetric about the plane y = 1.5 m. For 4 cables, no mirror "
+        "image has the same roles, loads, group, law and target: c1, c,2, c3, c4\n");
     ck_assert(!is_there(temp("nowhere.h5")));
     HIFDM(0, "check", net_with(nodes, cables), "--set", "optimize.symmetry=auto");
     OUT("symmetry: auto, plane x; 2 independent variables of 3\n");
@@ -134,7 +134,7 @@ START_TEST(a_template_is_a_table_of_the_base_design)
     EXPECT(result, out_as("r.json"), "--", "len(a) == 1 and a[0]['id'] == 'initial' and a[0]['status'] == 'ok'",
            "abs(float(a[0]['psi_m']) / b['form']['psi_m'] - 1) < 1e-6");
     HIFDM(5, "evaluate", REFLECTOR, "--template", path);
-    ERRS("error: %s exists; use --force to replace it\n", path);
+    ERRS("error: the file %s already exists. Use --force to replace it\n", path);
 }
 END_TEST
 
@@ -174,7 +174,7 @@ START_TEST(a_net_without_a_base_is_refused)
     ERR("error: ill-posed: 30 straight chains");
     HIFDM(2, "evaluate", REFLECTOR, "--template", temp("o.csv"), "--set",
           "scene.parabolic_cylinder.supports=perimeter");
-    ERR("no boundary cable has a free end, so there are no design variables");
+    ERR("no boundary cable has a free end, so the case has no design variables");
     ck_assert(!is_there(temp("o.csv")));
 }
 END_TEST
@@ -184,13 +184,13 @@ START_TEST(nothing_is_overwritten_unasked)
     const char *designs = file_with("d.csv", "c1,\"c,2\",c3\n10,10,9\n"), *net = net_with(nodes, cables);
     const char *out = file_with("o.csv", "mine");
     HIFDM(5, "evaluate", net, "--designs", designs, "-o", out);
-    ERRS("error: %s exists; use --force to replace it\n", out);
+    ERRS("error: the file %s already exists. Use --force to replace it\n", out);
     ck_assert(file_is(out, "mine"));
     HIFDM(0, "evaluate", net, "--designs", designs, "-o", out, "--force", "--quiet");
     ck_assert_str_eq(said.out, "");
     ck_assert(!file_is(out, "mine"));
     HIFDM(5, "evaluate", net, "--designs", designs, "-o", designs, "--force");
-    ERR("d.csv: is an input of this run");
+    ERR("d.csv: this file is an input of this run");
     HIFDM(5, "evaluate", net, "--designs", designs, "-o", temp("no/o.csv"));
     ERR("cannot write: No such file or directory\n");
 }

@@ -37,7 +37,7 @@ START_TEST(python_reads_and_draws_a_result)
     }
     SHELL(0, READ_EXAMPLE_PY, temp("cache"), python_program(), example, out, temp("picture.png"));
     OUT("12 m x 10 m parabolic cylinder, straight module edges\n  121 nodes, 220 cables\n");
-    OUT("warning: stop: rms_change ended before equilibrium");
+    OUT("warning: the stopping rule rms_change ended the iteration before equilibrium");
     EXPECT(out, file_with("said.txt", said.out), "--",
            "('form-finding: psi %.4f mm' % (a['form'].attrs['psi_m'] * 1e3)).encode() in b",
            "('search: psi %.4f mm' % (a['search'].attrs['psi_m'] * 1e3)).encode() in b",

@@ -124,7 +124,7 @@ START_TEST(existing_csv_is_not_replaced)
     HIFDM(0, "export", out, "--csv", temp("mine"));
     write_file(nodes, "mine");
     HIFDM(5, "export", out, "--csv", temp("mine"));
-    ERRS("error: %s exists; use --force to replace it", nodes);
+    ERRS("error: the file %s already exists. Use --force to replace it", nodes);
     ck_assert(file_is(nodes, "mine"));
     HIFDM(0, "export", out, "--csv", temp("mine"), "--force");
     demand_first_line(nodes, NODES_HEADER);
@@ -132,7 +132,7 @@ START_TEST(existing_csv_is_not_replaced)
     write_file(cables, "mine");
     ck_assert_int_eq(unlink(nodes), 0);
     HIFDM(5, "export", out, "--csv", temp("mine"));
-    ERRS("error: %s exists; use --force to replace it", cables);
+    ERRS("error: the file %s already exists. Use --force to replace it", cables);
     ck_assert(file_is(cables, "mine"));
     ck_assert(!is_there(nodes));
 }
@@ -143,14 +143,14 @@ START_TEST(what_cannot_be_exported_is_told)
     const char *form_only = temp("f.h5"), *csv = temp("csv");
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", form_only, "--quiet");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "search");
-    ERR("this run has no search shape; use --stage form");
+    ERR("this run has no search shape. Use --stage form");
     HIFDM(2, "export", form_only, "--vtk", temp("no_vtk"), "--cutlist", temp("no.csv"));
     ERR("error: "); /* refused as a whole: no folder is left for what was not written */
     ck_assert(!is_there(temp("no_vtk")) && !is_there(temp("no.csv")));
     const char *lm = temp("lm.h5");
     HIFDM(0, "run", file_with("lm.yaml", SMALL_SCENE "optimize: {method: lm}\n"), "-o", lm, "--quiet");
     HIFDM(2, "export", lm, "--csv", csv, "--stage", "search");
-    ERR("this run has no search shape; use --stage refine");
+    ERR("this run has no search shape. Use --stage refine");
     HIFDM(2, "export", form_only);
     ERR("error: 'hifdm export' needs --csv DIR, --vtk DIR, --cutlist FILE, --front FILE, --pattern FILE or --rf DIR\n");
     HIFDM(2, "export", form_only, "--csv", csv, "--stage", "best");
@@ -158,7 +158,7 @@ START_TEST(what_cannot_be_exported_is_told)
     HIFDM(5, "export", temp("missing.h5"), "--csv", csv);
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "export", REFLECTOR, "--csv", csv);
-    ERR("reflector.yaml: is not a result of hifdm");
+    ERR("reflector.yaml: this file is not a result of hifdm");
     ck_assert(!is_there(csv));
     HIFDM(5, "export", form_only, "--csv", temp("no/such/folder"));
     ERR("no/such/folder: cannot create this folder: No such file or directory");
@@ -179,10 +179,10 @@ START_TEST(a_mesh_without_shape_is_not_exported)
     ERR("so the facets have neither errors nor a far field");
     OUT("gain loss at 10 GHz: - dB for a fixed feed, - dB after best fit");
     HIFDM(2, "export", out, "--rf", rf);
-    ERR("pillows of the form-finding shape are not known: the mesh pulls on a cable");
+    ERR("pillows of the form-finding shape are unknown, because the mesh pulls on a cable");
     ck_assert(!is_there(rf));
     HIFDM(2, "export", out, "--pattern", temp("p.csv"));
-    ERR("this shape has no far field: the mesh pulls on a cable");
+    ERR("this shape has no far field, because the mesh pulls on a cable");
     ck_assert(!is_there(temp("p.csv")));
 }
 END_TEST

@@ -16,7 +16,7 @@ static const struct {
     {"[0,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not 0\n"},
     {"[-5,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not -5\n"},
     /* few enough nodes, but their band matrix would need 4 GB per thread */
-    {"[1,1]", "[800,800]", "error: the band matrix of 641597 rows, half-bandwidth 801 is too large\n"},
+    {"[1,1]", "[800,800]", "error: the band matrix with 641597 rows and half-bandwidth 801 is too large\n"},
 };
 
 /* 10 s of processor time is 100 times what it takes, and far less than any of these nets would. */
@@ -153,8 +153,8 @@ START_TEST(cancelling_struts_are_singular)
           net_with(THREE, "id,i,j,group,law,value\n1,a,c,inner,force_density,1\n"
                           "2,c,b,inner,force_density,-1\n"),
           NOWHERE);
-    ERR("error: ill-posed: the force density matrix is singular or not positive definite at node c (cables 1, 2): "
-        "its cables are slack, cannot balance its load, or do not lead to a support\n");
+    ERR("error: ill-posed: the force density matrix is singular or not positive definite at node c (cables 1, 2). The "
+        "cables of this node are slack, cannot balance its load, or do not lead to a support\n");
     HIFDM(4, "run",
           net_with(THREE, "id,i,j,group,law,value\n1,a,c,inner,force_density,1\n"
                           "2,c,b,inner,force_density,-0.9999999999999999\n"),

@@ -201,7 +201,7 @@ START_TEST(a_table_of_the_front_is_one_of_designs)
            "all(near(float(x[k]), float(y[k]), 1e-6) for x, y in zip(a, b) for k in ('objective_0_psi', "
            "'objective_1_ratio_boundary'))");
     HIFDM(5, "export", file, "--front", table);
-    ERR("exists; use --force to replace it\n");
+    ERR("already exists. Use --force to replace it\n");
 }
 END_TEST
 
@@ -210,7 +210,7 @@ START_TEST(a_run_without_objectives_has_no_front)
     const char *file = temp("f.h5");
     HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "--set", "optimize.method=lm", "-o", file);
     HIFDM(2, "export", file, "--front", temp("f.csv"));
-    ERR("this run has no front, because its case has no optimize.front\n");
+    ERR("this run has no Pareto front, because the case has no list optimize.front\n");
     ck_assert(!is_there(temp("f.csv")));
 }
 END_TEST
@@ -222,7 +222,7 @@ START_TEST(a_check_says_what_will_be_followed)
         "Levenberg-Marquardt\n");
     OUT("                Levenberg-Marquardt: rule force_density, at most 200 iterations, for each point\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: ratio, set: edges}]");
-    ERR("error: --set optimize.front.1.set: there is no set of cables 'edges'; did you mean 'edge'?\n");
+    ERR("error: --set optimize.front.1.set: this net has no cable set 'edges'; did you mean 'edge'?\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: deflection}]");
     ERR("error: --set optimize.front.1: deflection: needs a truss that deflects, but this net has none\n");
     HIFDM(0, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: pull}, {figure: evenness}]");
@@ -337,8 +337,8 @@ START_TEST(points_that_have_not_converged_say_so)
 {
     const char *file = temp("f.h5"), *json, *table = temp("f.csv");
     HIFDM(0, "run", FRONT, "-o", file, "--set", "optimize.refine_steps=2");
-    ERR(" of 7 points of the front have not converged after 2 steps. They have no slope, and better designs exist "
-        "near them; raise optimize.refine_steps\n");
+    ERR(" of 7 points of the front have not converged after 2 steps. These points have no slope, and better designs "
+        "exist near them. Raise optimize.refine_steps\n");
     OUT(" failed, ");
     OUT(" not converged; ");
     HIFDM(0, "show", file, "--json");
@@ -349,7 +349,7 @@ START_TEST(points_that_have_not_converged_say_so)
     HIFDM(0, "export", file, "--front", table);
     SHELL(0, "head -1 \"$1\" | grep -q ^id,mark,status,steps,converged,objective_0_psi,", table);
     HIFDM(0, "run", FRONT, "-o", file, "--force");
-    ck_assert(!strstr(said.err, "raise optimize.refine_steps"));
+    ck_assert(!strstr(said.err, "Raise optimize.refine_steps"));
 }
 END_TEST
 
@@ -360,7 +360,7 @@ START_TEST(generations_keep_their_front)
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga+lm", "--set", "optimize.generations=3", "--set",
           "optimize.rule=seeded", "-o", file);
     ERR("warning: optimize: Levenberg-Marquardt needs ");
-    ERR("; the front is that of the last generation\n");
+    ERR(". The result contains the front of the last generation\n");
     OUT("  front         ");
     HIFDM(0, "run", FRONT, "--set", "optimize.method=ga", "--set", "optimize.generations=3", "--set",
           "optimize.rule=seeded", "-o", before);

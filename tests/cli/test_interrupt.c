@@ -99,7 +99,7 @@ START_TEST(exact_tensions_are_told_to_stop)
     while (processor_s(s.id) < begun_s)
         nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
     ck_assert_int_eq(end_by(&s, SIGTERM), 75);
-    ck_assert(says(temp("err"), "form.prestress: exact: interrupted before its tensions were found"));
+    ck_assert(says(temp("err"), "form.prestress: exact: the run was interrupted before hifdm found the tensions"));
     SHELL(0, "ls \"$1\"* 2>/dev/null; true", path);
     ck_assert_str_eq(said.out, "");
 }

@@ -43,7 +43,7 @@ START_TEST(a_late_stage_that_fails_is_resumed)
     const char *journal = keep(formatted("%s.tolerance.journal", result));
     HIFDM(0, "run", path, "-o", undisturbed, "--quiet");
     SHELL(5, "SICK=\"$3\" LD_PRELOAD=\"$4\" \"$0\" run \"$1\" -o \"$2\" --quiet", path, result, late[_i].how, library);
-    ERR("is unfinished; run the same command again to resume");
+    ERR("this result is unfinished. Run the same command again to resume");
     EXPECT(result, "--", "not a.attrs['finished']", "len(a['form/length_m']) > 0", "'tolerance' not in a");
     if (late[_i].keeps_samples) ck_assert(is_there(journal));
     HIFDM(0, "run", path, "-o", result, "--quiet");
@@ -73,7 +73,7 @@ START_TEST(an_unfinished_result_is_read)
     HIFDM(0, "show", result, "--json");
     HIFDM(0, "report", result, "-o", temp("a.html"));
     HIFDM(0, "export", result, "--csv", temp("csv"), "--vtk", temp("vtk"), of[_i].format, temp("table.csv"));
-    if (_i == 0) ERR("is unfinished: the export has no truss");
+    if (_i == 0) ERR("the export has no truss, because this run is unfinished");
     HIFDM(0, "diff", result, result);
     HIFDM(0, "recover", result);
     HIFDM(0, "run", path, "-o", result, "--quiet");
@@ -105,7 +105,7 @@ START_TEST(a_restart_keeps_the_finished_result)
     ck_assert(!is_there(earlier));
     write_file(earlier, "precious");
     HIFDM(5, "run", path, "-o", result, "--restart", "--quiet");
-    ERR("this name is reserved for the earlier result");
+    ERR("hifdm needs this name for the earlier result");
     HIFDM(0, "diff", whole, result);
     SHELL(0, "test \"$(cat \"$1\")\" = precious", earlier);
 }

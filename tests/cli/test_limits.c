@@ -104,7 +104,7 @@ START_TEST(a_merit_without_a_value_is_no_merit)
     HIFDM(3, "run", net, "-o", out, "--set",
           "optimize.objective=[{figure: psi, weight: 1e300}, {figure: psi, weight: 1e200}]", "--set",
           "optimize.method=ga");
-    ERR("error: optimize: no feasible design: none of ");
+    ERR("error: optimize: the search found no feasible design, because none of ");
 }
 END_TEST
 

@@ -83,7 +83,8 @@ START_TEST(links_of_others_are_refused)
                  "%s && " NO_LEFTOVERS " && cat \"$6/said\"",
                  i ? "../real/y" : "\"$9\"", i ? "test ! -e \"$6/y\"" : "test \"$(cat \"$9\")\" = mine")),
              __LINE__);
-        if (writing[_i].output) OUT("is a symbolic link of another user; name the file to which it leads");
+        if (writing[_i].output)
+            OUT("this symbolic link belongs to another user. Give the name of the file to which the link points");
     }
 }
 END_TEST
@@ -101,7 +102,7 @@ START_TEST(links_of_others_to_devices_are_refused)
          "mknod \"$6/nul\" c 1 3 && ln -s \"$6/nul\" \"$OUT\"; chown -h 4711 \"$OUT\"; "
          "! cmd \"$@\" >\"$6/said\" 2>&1 && test -L \"$OUT\" && test -c \"$6/nul\" && cat \"$6/said\"",
          __LINE__);
-    OUT("is a symbolic link of another user; name the file to which it leads");
+    OUT("this symbolic link belongs to another user. Give the name of the file to which the link points");
 }
 END_TEST
 
@@ -133,7 +134,8 @@ START_TEST(folders_that_are_links_of_others_are_refused)
     play(5, &in_folder[_i], keep(formatted(script, "4711")), __LINE__);
     ck_assert_str_eq(said.out, empty);
     SHELL(0, "cat \"$1\"", temp("m"));
-    OUT(keep(formatted("%s: is a symbolic link of another user; name the folder to which it", temp("o/out"))));
+    OUT(keep(formatted("%s: this symbolic link belongs to another user. Give the name of the folder to which the link",
+                       temp("o/out"))));
     play(0, &in_folder[_i], keep(formatted(script, "0")), __LINE__);
     ck_assert_str_ne(said.out, empty);
 }
@@ -180,7 +182,7 @@ START_TEST(locks_lead_nowhere_else)
     const char *mine = file_with("mine", "mine"), *empty = file_with("empty", "");
     SHELL(0, in_the_way[_i], journal, mine, empty);
     HIFDM(5, "run", c, "-o", path);
-    ERRS("error: %s: %s is not a journal of hifdm, but has the name of one", path, journal);
+    ERRS("error: %s: %s is not a journal of hifdm, but the file has the name of a journal", path, journal);
     demand_untouched();
     struct command again = run_hifdm("run", c, "-o", path, "--restart", "--quiet");
     ck_assert_int_eq(again.exit_code, _i == N_IN_THE_WAY - 1 ? 5 : 0); /* a folder is not removed */
@@ -190,7 +192,7 @@ START_TEST(locks_lead_nowhere_else)
     SHELL(0, "mkdir \"$1\"", temp("s.d"));
     SHELL(0, in_the_way[_i], temp("s.d/claims"), mine, empty);
     HIFDM(5, "sweep", study, "--dir", temp("s.d"));
-    ERRS("error: %s: is not a regular file; remove it\n", temp("s.d/claims"));
+    ERRS("error: %s: this is not a regular file. Remove it\n", temp("s.d/claims"));
     demand_untouched();
     ck_assert(!is_there(temp("s.d/none")));
 }

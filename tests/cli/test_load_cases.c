@@ -76,11 +76,13 @@ START_TEST(a_load_case_is_exported)
            "np.array_equal(a['load_cases/sun/tension_N'], b['VTKHDF/CellData/tension_N'])",
            "np.array_equal(-a['load_cases/sun/truss/member/end_force'][:, 0], c['VTKHDF/CellData/axial_force_N'])");
     HIFDM(2, "export", out, "--csv", temp("no"), "--load-case", "moon");
-    ERRS("error: %s: has no load case 'moon'; it has cold, sun, cup_up, cup_down, spun\n", out);
+    ERRS("error: %s: this result has no load case 'moon'. The load cases of this result are cold, sun, cup_up, "
+         "cup_down, spun\n",
+         out);
     HIFDM(2, "export", out, "--csv", temp("no"), "--load-case", "sun", "--stage", "form");
     HIFDM(2, "export", out, "--cutlist", temp("no.csv"), "--load-case", "sun");
-    ERR("error: --load-case cannot be combined with --cutlist, which is of the design that all load cases are made "
-        "of\n");
+    ERR("error: the option --load-case cannot be combined with --cutlist, because that option exports the design that "
+        "all load cases share\n");
     ck_assert(!is_there(temp("no")) && !is_there(temp("no.csv")));
     HIFDM(0, "report", out, "-o", temp("page.html"));
     SHELL(0, "grep -c '\"stage\":\"load case ' \"$1\"", temp("page.html"));
@@ -115,7 +117,7 @@ START_TEST(another_table_is_another_run)
     HIFDM(5, "run", c, "-o", temp("a.h5"), "--quiet");
     ERR("exists");
     HIFDM(5, "run", c, "-o", temp("n.csv"), "--restart");
-    ERR("is an input of this run; choose another name\n");
+    ERR("this file is an input of this run. Choose another name\n");
     HIFDM(0, "run", c, "-o", temp("b.h5"), "--quiet");
     EXPECT(temp("a.h5"), temp("b.h5"), "--",
            "1.9 < b['load_cases/pulled'].attrs['displacement_rms_m'] / "
@@ -180,7 +182,7 @@ START_TEST(a_load_case_without_a_shape_does_not_stop_the_others)
     EXPECT(out_as("s.json"), temp("a.h5"), "--", "a['load_cases']['far']['tension_min_N'] is None",
            "'position_m' not in b['load_cases/far']", "a['load_cases']['still']['status'] == 'ok'");
     HIFDM(5, "export", temp("a.h5"), "--csv", temp("csv"), "--load-case", "far");
-    ERR("has no shape of a load case 'far'\n");
+    ERR("this result has no shape of the load case 'far'\n");
     HIFDM(0, "export", temp("a.h5"), "--vtk", temp("vtk"));
     OUT(" load_case_2.hdf (still)\n");
     HIFDM(0, "report", temp("a.h5"), "-o", temp("page.html"));

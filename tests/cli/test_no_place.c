@@ -19,8 +19,8 @@ START_TEST(load_equal_to_the_hanging_tension)
     const char *net = net_with(NODES "b,0,0,-1,inner,0,0,-3\n", CABLES "ab,a,b,inner,tension,3,\n");
     const char *result = temp("r.h5");
     HIFDM(0, "run", net, "-o", result, "--set", by(_i));
-    ERR("the equilibrium is not unique: 1 free node has no stiffness, mainly b (cables ab), so the position error is "
-        "unknown");
+    ERR("the equilibrium is not unique, because 1 free node has no stiffness, mainly b (cables ab). The position error "
+        "is therefore unknown");
     EXPECT(result, "--", "np.isnan(a['form'].attrs['position_error_m'])",
            "np.isnan(a['form'].attrs['position_bound_m'])", "a['form'].attrs['n_drifting'] == 1");
 }
@@ -60,8 +60,8 @@ START_TEST(lengths_that_do_not_span)
     const char *net = net_with(NODES "b,1,0,0,inner,0,0,0\nc,2,0,0,support,0,0,0\n",
                                CABLES "ab,a,b,inner,length,0.9,\nbc,b,c,inner,length,0.9,\n");
     HIFDM(4, "run", net, "-o", temp("r.h5"), "--set", by(_i));
-    ERR("error: ill-posed: the lengths of ab + bc add up to 1.8 m, but their supports are 2 m apart, so there is no "
-        "shape");
+    ERR("error: ill-posed: the lengths of ab + bc add up to 1.8 m, but the supports of these cables are 2 m apart. "
+        "Use");
 }
 END_TEST
 
@@ -87,7 +87,7 @@ START_TEST(balance_that_is_not_by_law)
     const char *net = keep(source_path("tests/verify/data/parting/case.yaml"));
     HIFDM(0, "run", net, "-o", temp("a.h5"), "--set", "form.method=hifdm");
     ERR("with the laws of the elastic cables, residual forces of up to 4.11e-02 N remain");
-    ERR("lower form.length_tolerance, or use form.method: newton");
+    ERR("Lower form.length_tolerance, or use form.method: newton");
     ERR("and 5 more are stretched by up to 16.7 % (22.79 N, EA 136.5 N)");
     HIFDM(0, "run", net, "-o", temp("b.h5"));
     ck_assert_ptr_null(strstr(said.err, "by the laws"));

@@ -275,7 +275,7 @@ START_TEST(options_may_have_old_names)
     HIFDM(2, "export", result, "--csv", temp("no"), "--stage", "best");
     ERR("error: --stage must be form, search or refine, not 'best'\n");
     HIFDM(2, "run", temp("now.yaml"), "--case", "cold");
-    ERR("error: '--case' is not an option of this command; 'hifdm help run' lists its options\n");
+    ERR("error: '--case' is not an option of this command. 'hifdm help run' lists the options of the command\n");
     HIFDM(0, "help", "export");
     ck_assert_ptr_null(strstr(said.out, "--case"));
 }

@@ -21,7 +21,7 @@ START_TEST(quiet_prints_nothing_but_warnings)
     ck_assert_str_eq(said.err, "");
     HIFDM(0, "run", CHEN, "-o", temp("w.h5"), "--quiet", "--set", "optimize.generations=2");
     ck_assert_str_eq(said.out, "");
-    ERR("warning: stop: rms_change ended before equilibrium");
+    ERR("warning: the stopping rule rms_change ended the iteration before equilibrium");
 }
 END_TEST
 
@@ -61,7 +61,7 @@ START_TEST(seed_option_wins_over_the_case)
     HIFDM(0, "run", path, "-o", b, "--json", "--set", "optimize.seed=18446744073709551615");
     EXPECT(a, b, "--", "differing(a, b) == ['case/overrides']");
     HIFDM(0, "run", file_with("f.yaml", small_form_case), "-o", temp("f.h5"), "--seed", "1");
-    ERR("warning: --seed has no effect, because the case has no section optimize\n");
+    ERR("warning: the option --seed has no effect, because the case has no `optimize` section\n");
 }
 END_TEST
 
@@ -95,13 +95,13 @@ START_TEST(files_may_begin_with_a_hyphen)
     SHELL(0, "cd \"$1\" && \"$0\" run --restart -o --new.h5 -- -c.yaml && test -e --new.h5", folder);
     SHELL(0, "cd \"$1\" && \"$0\" diff --rtol 1 -- -c.h5 --new.h5", folder);
     SHELL(2, "cd \"$1\" && \"$0\" show -- -c.h5 --json", folder);
-    ERR("'--json' is one argument too many for 'hifdm show'");
+    ERR("'--json' is an unexpected argument of 'hifdm show'");
     SHELL(5, "cd \"$1\" && \"$0\" show -- --", folder);
     ERR("error: --: cannot open");
     SHELL(2, "cd \"$1\" && \"$0\" show --", folder);
-    ERR("'hifdm show' needs a FILE");
+    ERR("'hifdm show' needs the argument FILE");
     HIFDM(2, "explain", "--", "-c.yaml");
-    ERR("there is no entry '-c.yaml'");
+    ERR("the glossary has no entry '-c.yaml'");
 }
 END_TEST
 

@@ -21,11 +21,10 @@ START_TEST(existing_output_is_not_replaced)
 {
     const char *path = temp("mine.h5");
     write_file(path, "mine");
-    REFUSED(
-        path,
-        "error: %s: exists and is not a result of hifdm; use --restart (in a sweep: --retry failed) to replace it or "
-        "-o to choose another name\n",
-        path);
+    REFUSED(path,
+            "error: %s: this file exists and is not a result of hifdm. Use --restart (in a sweep: --retry failed) to "
+            "replace the file, or use -o to choose another name\n",
+            path);
     ck_assert(file_is(path, "mine"));
     HIFDM(2, "run", file_with("bad.yaml", "scene: 1\n"), "-o", path, "--force");
     ck_assert(file_is(path, "mine"));
@@ -35,9 +34,9 @@ START_TEST(existing_output_is_not_replaced)
     EXPECT(path, "--", "'form' in a");
     demand_no_leftovers();
     HIFDM(2, "run", path, "-o", temp("other.h5"));
-    ERR("mine.h5: is an HDF5 file, not a case. If it is a result, use hifdm show, report or export\n");
+    ERR("mine.h5: this file is an HDF5 file, not a case file. For a result file, use hifdm show, report or export\n");
     SHELL(0, "head -c 30000 \"$1\" >\"$1.cut\" && mv \"$1.cut\" \"$1\"", path);
-    REFUSED(path, "error: %s: exists and is cut off: a truncated HDF5 file; use --restart", path);
+    REFUSED(path, "error: %s: this file exists and is cut off: a truncated HDF5 file. Use --restart", path);
 }
 END_TEST
 
@@ -65,11 +64,11 @@ END_TEST
 START_TEST(output_that_cannot_be_is_told)
 {
     write_file(temp("file"), "mine");
-    REFUSED(temp("no/such/r.h5"), "error: %s: there is no folder %s;", temp("no/such/r.h5"), temp("no/such"));
-    REFUSED(temp("file/r.h5"), "error: %s: there is no folder %s;", temp("file/r.h5"), temp("file"));
-    REFUSED(temp("."), "error: %s: is a folder; use -o to choose a file name\n", temp("."));
-    REFUSED("/dev/full", "error: /dev/full: is not a regular file; use -o to choose a file name\n");
-    REFUSED("/dev/null", "error: /dev/null: is not a regular file; use -o to choose a file name\n");
+    REFUSED(temp("no/such/r.h5"), "error: %s: the folder %s does not exist.", temp("no/such/r.h5"), temp("no/such"));
+    REFUSED(temp("file/r.h5"), "error: %s: the folder %s does not exist.", temp("file/r.h5"), temp("file"));
+    REFUSED(temp("."), "error: %s: this is a folder. Use -o to choose a file name\n", temp("."));
+    REFUSED("/dev/full", "error: /dev/full: this is not a regular file. Use -o to choose a file name\n");
+    REFUSED("/dev/null", "error: /dev/null: this is not a regular file. Use -o to choose a file name\n");
     REFUSED("/proc/hifdm.h5", "error: /proc/hifdm.h5: cannot "); /* nobody can make a file there, root included */
     ck_assert(file_is(temp("file"), "mine"));
     HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", temp("file/r.h5"), "--force");
@@ -142,10 +141,10 @@ START_TEST(paths_are_as_long_as_the_system_has_them)
     }
     const char *study = file_with("s.yaml", "base: c.yaml\nsweep: {form.pretension_N: [9, 10]}\n");
     HIFDM(5, "sweep", study, "--dir", deep);
-    ERR("0: the path is too long; at most 1023 bytes are possible here\n");
+    ERR("0: the path is longer than the maximum of 1023 bytes\n");
     HIFDM(0, "sweep", study, "--dir", temp("s.d"));
     HIFDM(5, "merge", study, "--dir", temp("s.d"), "-o", formatted("%s/m.h5", deep));
-    ERR("/m.h5: the path is too long; at most 1023 bytes are possible here\n");
+    ERR("/m.h5: the path is longer than the maximum of 1023 bytes\n");
     SHELL(0, "ls \"$1\"", deep);
     ck_assert_int_eq(count_of(said.out, "\n"), 1); /* the folder made above, and nothing else */
     demand_no_leftovers();
@@ -190,7 +189,7 @@ START_TEST(a_merge_into_no_ordinary_file)
         for (int force = 0; force < 2; force++) {
             SHELL(0, formatted(MERGE_INTO("x") "%s; test $? = 5 && %s \"$2/x\"", force ? " --force" : "", make[i][1]),
                   study, folder);
-            ERRS("x: is %s; use -o to choose a file name\n", i == 1 ? "a folder" : "not a regular file");
+            ERRS("x: this is %s. Use -o to choose a file name\n", i == 1 ? "a folder" : "not a regular file");
         }
     }
 }
@@ -217,8 +216,8 @@ START_TEST(a_merge_spares_what_it_is_made_of)
                                          "cmp \"$2/$name\" \"$2/copy\" && exit $code",
                             input[i], force ? " --force" : ""),
                   study, folder);
-            ERR("; choose another name\n");
-            ERR(i >= 3 && i < 6 ? ": belongs to the sweep in " : ": is an input of this merge; ");
+            ERR(". Choose another name\n");
+            ERR(i >= 3 && i < 6 ? ": this file belongs to the sweep in " : ": this file is an input of this merge. ");
         }
     SHELL(0, MERGE_INTO("s.d/all.h5") " && " MERGE_INTO("s.d/all.h5") " --force", study, folder); /* a merge may go */
 }
@@ -240,7 +239,7 @@ START_TEST(an_export_spares_its_result)
                         "\"$0\" export %s %s --force; code=$?; cmp %s \"$1\" && exit $code",
                         to[i][0], to[i][0], to[i][1], to[i][0]),
               result, temp("e"));
-        ERR(": is the result itself; choose another name\n");
+        ERR(": this file is the result itself. Choose another name\n");
         SHELL(0, "find \"$1\" -type f", temp("e")); /* nothing but the result */
         ck_assert_int_eq(count_of(said.out, "\n"), 1);
     }
@@ -325,7 +324,7 @@ START_TEST(full_disk_leaves_no_part_of_an_export)
     SHELL(0, "ls -A \"$1\" \"$2\" | wc -w", csv, vtk);
     ck_assert_str_eq(said.out, "8\n");
     HIFDM(5, "export", result, "--csv", csv, "--cutlist", temp("csv/nodes.csv"), "--force");
-    ERR("two files would have this name");
+    ERR("two output files would have this name");
 }
 END_TEST
 

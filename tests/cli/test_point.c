@@ -92,8 +92,9 @@ END_TEST
 START_TEST(what_is_of_no_point_is_told)
 {
     static const char beside[] =
-        "a front is not a single design, so load_cases and tolerance belong to the net of the form-finding",
-                      untaken[] = ": no point of its front is selected, so the shape is that of the form-finding, ";
+        "a front is not a single design, so hifdm computes load_cases and tolerance for the net after form-finding",
+                      untaken[] =
+                          ": no point of the Pareto front is selected, so hifdm uses the shape after form-finding, ";
     const char *c = file_with("d.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), *front = temp("f.h5"),
                *path = temp("p.h5"), *cut = temp("cut.csv"), *said_at;
     HIFDM(0, "check", c);
@@ -136,7 +137,8 @@ START_TEST(points_of_generations_are_taken)
     c, "--set", "optimize.generations=5", "--set", "optimize.front=[{figure: psi}, {figure: deflection}]"
     HIFDM(0, "run", GENERATIONS, "-o", front);
     HIFDM(0, "export", front, "--csv", temp("end"));
-    ERR(": no point of its front is selected, so the shape is the end of the front with the minimum objective_0_psi. ");
+    ERR(": no point of the Pareto front is selected, so hifdm uses the end of the front with the minimum "
+        "objective_0_psi. ");
     HIFDM(0, "run", GENERATIONS, "--point", point(front, 2), "-o", path);
     EXPECT(front, path, "--", "near(b['objective/refine'][0], a['front/objective'][1, 0], 1e-6)",
            "near(b['objective/refine'][1], a['front/objective'][1, 1], 1e-6)",
@@ -155,32 +157,33 @@ START_TEST(a_wrong_point_is_refused)
                *other = temp("q.h5");
     HIFDM(0, "run", c, "--point", point(front, 3), "-o", path, "--quiet");
     HIFDM(0, "run", c, "--point", point(front, 3), "-o", path, "--quiet");
-    ERR(": is the finished result of this case; ");
+    ERR(": this file is the finished result of this case. ");
     HIFDM(5, "run", c, "--point", point(front, 4), "-o", path);
-    ERRS("what differs: it has --point %s:3, and this run --point %s:4. ", front, front);
+    ERRS("The differences are: it has --point %s:3, and this run --point %s:4. ", front, front);
     HIFDM(5, "run", c, "-o", path);
-    ERRS("what differs: it has --point %s:3, and this run no --point. ", front);
+    ERRS("The differences are: it has --point %s:3, and this run no --point. ", front);
     HIFDM(0, "run", c, "-o", front, "--set", "optimize.front_points=9", "--restart", "--quiet");
     HIFDM(5, "run", c, "--point", point(front, 3), "-o", path);
-    ERRS("what differs: it has --point %s:3, whose design is another one in the front that is there now. ", front);
+    ERRS("The differences are: it has --point %s:3, whose design is another one in the front that is there now. ",
+         front);
     HIFDM(0, "run", c, "-o", front, "--restart", "--quiet");
     HIFDM(2, "run", c, "--point", point(front, 8), "-o", other);
-    ERRS("error: %s: its front has points 1 to 7, but no point 8; `hifdm export %s --front FILE` lists them\n", front,
-         front);
+    ERRS("error: %s: the front has points 1 to 7, but no point 8. `hifdm export %s --front FILE` lists these points\n",
+         front, front);
     const char *const none[] = {front, "f.h5:", "f.h5:0", "f.h5:-1", "f.h5:1.5", ":3", "3"};
     for (int i = 0; i < 7; i++) {
         HIFDM(2, "run", c, "--point", none[i], "-o", other);
-        ERRS("error: --point must be FILE:N, a result with a front and the number of a point, such as night.h5:7, not "
-             "'%s'\n",
+        ERRS("error: --point must be FILE:N, such as night.h5:7, not '%s'. FILE is a result with a Pareto front, and N "
+             "is the number of a point\n",
              none[i]);
     }
     HIFDM(2, "run", c, "--point", point(path, 1), "-o", other);
-    ERRS("error: %s: has no front, so it has no points; run a case with optimize.front\n", path);
+    ERRS("error: %s: this result has no Pareto front. Use the result of a case with the list optimize.front\n", path);
     HIFDM(5, "run", c, "--point", point(temp("none.h5"), 1), "-o", other);
     HIFDM(5, "run", c, "--point", point(c, 1), "-o", other);
-    ERRS("error: %s: is not a result of hifdm", c);
+    ERRS("error: %s: this file is not a result of hifdm", c);
     HIFDM(5, "run", c, "--point", point(front, 3), "-o", front, "--restart");
-    ERRS("error: %s: is an input of this run; choose another name\n", front);
+    ERRS("error: %s: this file is an input of this run. Choose another name\n", front);
     ck_assert(!is_there(other));
 }
 END_TEST
@@ -191,17 +194,17 @@ START_TEST(a_front_of_another_case_is_refused)
     const char *c = file_with("c.yaml", NET OPTIMIZE PSI_AND_RATIO), *front = front_of(c, "f.h5"),
                *other = temp("q.h5");
     HIFDM(2, "run", file_with("g.yaml", NET OPTIMIZE), "--point", point(front, 3), "-o", other);
-    ERRS("error: %s: its front has other objectives than %s: use the case file and the --set options of that front; "
+    ERRS("error: %s: the front has other objectives than %s: use the case file and the --set options of that front; "
          "different: optimize.front\n",
          front, temp("g.yaml"));
     HIFDM(2, "run", c, "--set", "optimize.front=[{figure: psi}, {figure: pull}]", "--point", point(front, 3), "-o",
           other);
-    ERR(": its front has other objectives than ");
+    ERR(": the front has other objectives than ");
     HIFDM(2, "run", c, "--set", "optimize.variables=[{set: all, vary: force_density, range: 10 %}]", "--point",
           point(front, 3), "-o", other);
-    ERR(": its front has other variables than ");
+    ERR(": the front has other variables than ");
     HIFDM(2, "run", c, "--set", "form.pretension_N=11", "--point", point(front, 3), "-o", other);
-    ERRS("error: %s: point 3 of its front has objective_1_ratio_boundary ", front);
+    ERRS("error: %s: point 3 of the front has objective_1_ratio_boundary ", front);
     ERR(": use the case file and the --set options of that front; different: form.pretension_N\n");
     HIFDM(2, "run", file_with("b.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), "--set", "form.pretension_N=11",
           "--point", point(front, 3), "-o", other);
@@ -214,9 +217,9 @@ START_TEST(a_front_of_another_case_is_refused)
         "form.max_iterations, form.collapse_ratio, optimize.range_N, optimize.max_tension_N and 2 more\n");
     HIFDM(2, "run", c, "--set", "optimize.limits=[{figure: tension, set: boundary, bounds: [900, 901]}]", "--point",
           point(front, 3), "-o", other);
-    ERRS("error: %s: point 3 of its front is not a feasible design of %s (", front, c);
+    ERRS("error: %s: point 3 of the front is not a feasible design of %s (", front, c);
     HIFDM(2, "run", c, "--set", "optimize.range_N=0.1", "--point", point(front, 3), "-o", other);
-    ERRS("error: %s: point 3 of its front has ", front);
+    ERRS("error: %s: point 3 of the front has ", front);
     ERRS(", but %s allows ", c);
     ck_assert(!is_there(other));
 }

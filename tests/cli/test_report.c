@@ -212,13 +212,13 @@ START_TEST(truss_is_shown_when_there_is_one)
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nh5py.File(sys.argv[1], 'r+')['truss/member/end'][2, 1] = 132", out);
     HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
-    ERR("t.h5: is damaged: /truss/member/end names a node that is not there");
+    ERR("t.h5: this file is damaged, because the dataset /truss/member/end refers to a missing node");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['truss/member/end']; f['truss/member/end'] = "
           "'pinned'",
           out);
     HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
-    ERR("t.h5: is damaged: /truss/member/end is of another type");
+    ERR("t.h5: this file is damaged: /truss/member/end is of another type");
 }
 END_TEST
 
@@ -293,12 +293,12 @@ START_TEST(merged_study_is_a_page_of_points)
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['points/id'], f['points/input/x']", merged);
     HIFDM(5, "report", merged, "-o", page, "--force");
-    ERR("s.h5: is damaged: /points/id does not name every point");
+    ERR("s.h5: this file is damaged, because the dataset /points/id does not contain every point");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), make_study, merged);
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); f['points/status'][1] = -1", merged);
     HIFDM(5, "report", merged, "-o", page, "--force");
-    ERR("s.h5: is damaged: /points/status");
+    ERR("s.h5: this file is damaged, because the dataset /points/status");
 }
 END_TEST
 
@@ -323,12 +323,12 @@ START_TEST(two_results_are_compared)
     OUT("../a.h5 and ../b.h5: report in a_b.html");
     OUT("\na_b.html\n"); /* a.html is the page of a.h5 alone */
     HIFDM(5, "report", first, second, "-o", second, "--force");
-    ERR("b.h5: is the result to compare with; choose another name");
+    ERR("b.h5: this file is the result to compare with. Choose another name");
     HIFDM(5, "report", first, temp("missing.h5"), "-o", page, "--force");
     ERR("missing.h5: cannot open: No such file or directory");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), make_study, temp("s.h5"));
     HIFDM(2, "report", first, temp("s.h5"), "-o", page, "--force");
-    ERR("s.h5 is a merged study: only two results can be compared");
+    ERR("s.h5 is a merged study, but hifdm report compares only two results");
 }
 END_TEST
 
@@ -338,14 +338,14 @@ START_TEST(files_are_not_replaced_unasked)
     HIFDM(0, "run", file_with("r.yaml", SMALL_SCENE), "-o", out, "--quiet");
     write_file(page, "mine");
     HIFDM(5, "report", out, "-o", page);
-    ERRS("error: %s exists; use --force to replace it", page);
+    ERRS("error: the file %s already exists. Use --force to replace it", page);
     ck_assert(file_is(page, "mine"));
     HIFDM(0, "report", out, "-o", page, "--force");
     SHELL(0, "cp \"$1\" \"$1.1\"", page);
     HIFDM(0, "report", out, "-o", page, "--force");
     SHELL(0, "cmp \"$1\" \"$1.1\"", page); /* the same file gives the same bytes */
     HIFDM(5, "report", out, "-o", out, "--force");
-    ERR("r.h5: is the result itself; choose another name");
+    ERR("r.h5: this file is the result itself. Choose another name");
     HIFDM(0, "show", out);
     SHELL(0, "cd \"$(dirname \"$1\")\" && mkdir x && cd x && \"$0\" report ../r.h5 && ls -A", out);
     OUT("report in r.html");
@@ -355,9 +355,9 @@ START_TEST(files_are_not_replaced_unasked)
     HIFDM(5, "report", temp("missing.h5"));
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "report", CHEN, "-o", temp("y.html"));
-    ERR("straight-edges.yaml: is not a result of hifdm");
+    ERR("straight-edges.yaml: this file is not a result of hifdm");
     HIFDM(2, "report");
-    ERR("'hifdm report' needs a FILE");
+    ERR("'hifdm report' needs the argument FILE");
     ck_assert(!is_there(temp("y.html")));
 }
 END_TEST

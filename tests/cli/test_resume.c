@@ -172,11 +172,11 @@ START_TEST(a_torn_journal_gives_what_is_whole)
     const char *copy = temp_path("copy.h5");
     SHELL(0, "cp \"$1\" \"$2\" && cp \"$1.journal\" \"$2.journal\"", path, copy);
     HIFDM(0, "recover", copy);
-    ERR("is damaged: its last ");
+    ERR("is damaged, so hifdm ignores its last ");
     SHELL(0, "cp \"$1\" \"$2\" && cp \"$1.journal\" \"$2.journal\"", path, copy);
     SHELL(0, "printf another | dd of=\"$1.journal\" bs=1 seek=10 conv=notrunc 2>/dev/null", copy);
     HIFDM(5, "recover", copy);
-    ERR("belongs to another case. Delete it, put the right journal there");
+    ERR("belongs to another case. Delete this journal, replace it with the right journal");
     ck_assert_int_ge(generations_in_journal(copy, NULL), n - 2);                         /* it is as it was */
     SHELL(0, "head -c 30 \"$1.journal\" >\"$1.t\" && mv \"$1.t\" \"$1.journal\"", path); /* not even a header */
     HIFDM(0, "recover", path);
@@ -226,7 +226,7 @@ START_TEST(stopped_runs_publish_and_go_on)
     wait_for_generations(&s, path);
     ck_assert_int_eq(end_by(&s, stops[_i]), 75);
     char *err = read_file(temp_path("err"), NULL);
-    ck_assert_msg(strstr(err, "interrupted; run the same command again to resume") != NULL, "%s", err);
+    ck_assert_msg(strstr(err, "the run was interrupted. Run the same command again to resume") != NULL, "%s", err);
     free(err);
     SHELL(0, "ls \"$1\"*", path);
     ck_assert_str_eq(said.out, formatted("%s\n", path)); /* all of it is in the one file */
@@ -324,7 +324,7 @@ START_TEST(a_stopped_refinement_goes_on_to_the_same_bits)
     int n_stopped, iteration = -1;
     ck_assert_msg(at && sscanf(at, "interrupted after %d steps of the refinement, at psi ", &n_stopped) == 1, "%s",
                   err);
-    ck_assert(strstr(at, " and a merit of ") && strstr(at, "; run the same command again to resume"));
+    ck_assert(strstr(at, " and a merit of ") && strstr(at, ". Run the same command again to resume"));
     ck_assert_int_gt(n_stopped, 0);
     free(err);
     s = start_program(argv);
@@ -352,18 +352,18 @@ START_TEST(another_case_is_told_key_by_key)
     const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *path = temp("run.h5");
     HIFDM(0, "run", c, "-o", path, "--quiet");
     HIFDM(0, "run", c, "-o", path);
-    ERR("is the finished result of this case; use --restart to compute it again");
+    ERR("this file is the finished result of this case. Use --restart to compute the result again");
     OUT("\n  search          ");
     HIFDM(5, "run", c, "-o", path, "--set", "form.pretension_N=11", "--set", "optimize.elites=3");
-    ERR("finished result of another case; what differs: form.pretension_N, optimize.elites. Use --restart");
+    ERR("finished result of another case. The differences are: form.pretension_N, optimize.elites. Use --restart");
     HIFDM(5, "run", c, "-o", path, "--seed", "8");
-    ERR("what differs: optimize.seed.");
+    ERR("The differences are: optimize.seed.");
     HIFDM(5, "run", file_with("c.yaml", "# a remark\n" SMALL_SCENE SMALL_GA), "-o", path);
     ERR("no key, but comments and layout");
     HIFDM(5, "run", file_with("c.yaml", SMALL_SCENE), "-o", path);
-    ERR("what differs: optimize,");
+    ERR("The differences are: optimize,");
     HIFDM(0, "recover", path);
-    ERR("is finished: there is nothing to recover");
+    ERR("this result is finished, so there is nothing to recover");
     OUT("\n  search          ");
     HIFDM(0, "run", file_with("c.yaml", SMALL_SCENE), "-o", path, "--restart", "--quiet");
     EXPECT(path, "--", "'search' not in a");
@@ -374,7 +374,7 @@ START_TEST(another_case_is_told_key_by_key)
     SHELL(0, "mkdir \"$1\"", temp("elsewhere")); /* files that the case names are beside the case */
     HIFDM(0, "run", net, "-o", temp("elsewhere/net.h5"), "--quiet");
     HIFDM(5, "run", net, "-o", temp("elsewhere/net.h5"), "--set", "form.pretension_N=11");
-    ERR("what differs: form.pretension_N. Use");
+    ERR("The differences are: form.pretension_N. Use");
 }
 END_TEST
 
@@ -421,7 +421,7 @@ START_TEST(a_stopped_point_goes_on_to_the_same_bits)
     ck_assert(wait_until(&s, says_samples, temp("err")));
     ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
     HIFDM(5, "run", c, "--point", keep(formatted("%s:3", front)), "-o", path);
-    ERR("is the unfinished result of another case; what differs: it has --point ");
+    ERR("is the unfinished result of another case. The differences are: it has --point ");
     HIFDM(0, "run", c, "--point", point, "-o", path, "--quiet", "--threads", "1");
     HIFDM(0, "run", c, "--point", point, "-o", whole, "--quiet", "--threads", "2");
     HIFDM(0, "diff", path, whole);

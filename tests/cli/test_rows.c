@@ -110,8 +110,8 @@ START_TEST(a_cable_called_like_a_variable_of_a_support_is_refused)
           net_with(nodes, "id,i,j,group,law,value,set\nc1,a,m,boundary,tension,10,edge\n"
                           "c.y,b,m,boundary,tension,10,edge\nc3,c,m,boundary,tension,9,stay\n"),
           "--template", temp("t.csv"), "--set", VARIABLES);
-    ERR("error: optimize.variables: the name of cable 'c.y' is also the name of a design variable of a support; "
-        "rename the cable\n");
+    ERR("error: optimize.variables: cable 'c.y' has the same name as a design variable of a support. Rename the "
+        "cable\n");
     ck_assert(!is_there(temp("t.csv")));
 }
 END_TEST
@@ -153,18 +153,18 @@ START_TEST(derivatives_are_refused_where_there_are_none)
     ERR("error: there are no derivatives under optimize.rule seeded\n");
     ck_assert(!is_there(slopes));
     HIFDM(2, "evaluate", net, "--template", temp("t.csv"), "--jacobian", slopes);
-    ERR("error: --jacobian needs --designs FILE\n");
+    ERR("error: the option --jacobian needs --designs FILE\n");
     HIFDM(2, "evaluate", net, "--designs", designs, "-o", slopes, "--jacobian", slopes);
-    ERR("error: --jacobian and -o must name different files\n");
+    ERR("error: the options --jacobian and -o must name different files\n");
     const char *table = temp("r.csv"), *other = temp("./r.csv");
     HIFDM(2, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", other);
-    ERR("error: --jacobian and -o must name different files\n");
+    ERR("error: the options --jacobian and -o must name different files\n");
     SHELL(0, "cp \"$1\" \"$2\" && ln -s r.csv \"$3\"", designs, table, temp("link.csv"));
     other = temp("link.csv");
     HIFDM(5, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", other, "--force");
-    ERR("link.csv: is the table of results; choose another name\n");
+    ERR("link.csv: this file is the table of results. Choose another name\n");
     HIFDM(5, "evaluate", net, "--designs", designs, "--jacobian", designs, "--force");
-    ERR("d.csv: is an input of this run");
+    ERR("d.csv: this file is an input of this run");
 }
 END_TEST
 
@@ -312,8 +312,8 @@ START_TEST(rows_that_no_variable_reaches_are_named)
                                              "    - {figure: tension, set: all, bounds: [null, 90]}\n"
                                              "    - {figure: ratio, set: far, bounds: [1, 5]}\n");
     HIFDM(0, "run", path, "-o", temp("two.h5"));
-    ERRS("warning: %s:7:7: optimize.variables.1: has no effect at the initial design, because its cables or the "
-         "cables at its supports are slack\n",
+    ERRS("warning: %s:7:7: optimize.variables.1: this design variable has no effect at the initial design, because its "
+         "cables or the cables at its supports are slack\n",
          path);
     ERRS("warning: %s:9:7: optimize.objective.0: no design variable of this case changes objective_0_mass_far: all of "
          "its "
@@ -323,8 +323,8 @@ START_TEST(rows_that_no_variable_reaches_are_named)
          "all of "
          "its cables keep their tensions\n",
          path);
-    ERRS("warning: %s:16:7: optimize.limits.1: no design variable of this case changes the limited figure: all of its "
-         "cables keep their tensions\n",
+    ERRS("warning: %s:16:7: optimize.limits.1: no design variable of this case changes the limited quantity: all of "
+         "its cables keep their tensions\n",
          path);
     ck_assert_int_eq(count_of(said.err, "no design variable of this case"), 3);
     EXPECT(temp("two.h5"), "--", "attribute(a, 'warnings').count('no design variable of this case') == 3",
@@ -341,13 +341,14 @@ START_TEST(nothing_is_sought_that_no_variable_reaches)
         "optimize.variables=[{set: far, vary: tension, range: 1}]"};
     static const char *const why[] = {
         ("error: --set optimize.objective.0: no design variable of this case changes objective_0_length_far: all of "
-         "its cables keep their lengths. Add a design variable that does, or remove the row\nerror: --set "
-         "optimize.objective.1: no design variable of this case changes objective_1_evenness_far: all of its cables "
-         "keep their tensions. Add a design variable that does, or remove the row\n"),
+         "its cables keep their lengths. Add a design variable that changes this objective, or remove the "
+         "objective\nerror: --set optimize.objective.1: no design variable of this case changes "
+         "objective_1_evenness_far: all of its cables keep their tensions. Add a design variable that changes this "
+         "objective, or remove the objective\n"),
         ("error: --set optimize.front.1: no design variable of this case changes objective_1_mass_far: all of its "
-         "cables keep their lengths. Add a design variable that does, or remove the row\n"),
-        ("error: --set optimize.variables.0: no design variable of this case changes psi: none of its nodes moves. "
-         "Add a design variable that does, or use another optimize.objective\n")};
+         "cables keep their lengths. Add a design variable that changes this objective, or remove the objective\n"),
+        ("error: --set optimize.variables.0: no design variable of this case changes psi: none of its nodes moves. Add "
+         "a design variable that changes psi, or use another objective in the list optimize.objective\n")};
     static const char *const command[] = {"run", "check"};
     const char *net = net_with(two_nets, two_cables), *out = temp("none.h5");
     for (int k = 0; k < 2; k++) {
@@ -410,11 +411,10 @@ START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
     static const char *const what[] = {
         ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222, but the "
         "bound of boundary_ratio_cap is 10",
-        " are above boundary_ratio_cap 10; the initial design has 22.22; raise optimize.boundary_ratio_cap, or widen "
-        "the "
-        "ranges and bounds of optimize.variables",
+        " are above boundary_ratio_cap 10. The initial design has 22.22. Raise optimize.boundary_ratio_cap, or widen "
+        "the ranges and bounds of optimize.variables",
         "",
-        " ratio of cable c4 to c3 is 22.2222, but the bound of boundary_ratio_cap is 10; loosen the limits, or widen "};
+        " ratio of cable c4 to c3 is 22.2222, but the bound of boundary_ratio_cap is 10. Loosen the limits, or widen "};
     const char *hint =
         "; 10 is the default of optimize.boundary_ratio_cap: if the net may have a larger ratio, set this key in the "
         "case\n";

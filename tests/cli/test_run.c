@@ -34,8 +34,8 @@ START_TEST(json_has_the_keys_of_each_stage)
            "0 < a['search']['cpu_s'] <= 1.05 * a['search']['wall_s'] * a['threads']");
     /* standard output is the object alone; the warnings are for people, too */
     ck_assert_int_eq(said.out[0], '{');
-    ERR("warning: stop: rms_change ended before equilibrium of the form-finding shape: ");
-    ERR("straight chains of length-controlled cables carry lateral load");
+    ERR("warning: the stopping rule rms_change ended the iteration before equilibrium of the form-finding shape. ");
+    ERR("straight chains of length-controlled cables carry a lateral load");
     ck_assert(is_there(out));
 }
 END_TEST
@@ -85,7 +85,7 @@ START_TEST(not_converged_is_stored_and_told)
     const char *out = temp("c.h5");
     HIFDM(3, "run", CHEN, "-o", out, "--set", "form.max_iterations=7", "--json");
     ERR("error: form-finding did not converge in 7 iterations");
-    ERR("' is farthest from its law");
+    ERR("' deviates most from its law");
     EXPECT(out_as("c.json"), out, "--", "a['status'] == 'not_converged'", "a['form']['status'] == 'not_converged'",
            "a['form']['iterations'] == 7", "a['form']['stop_reason'] == 'max_iterations'", "'search' not in a",
            "attribute(b, 'status') == 'not_converged'", "b['form/history/psi_m'].shape == (7,)", "'search' not in b",
@@ -144,7 +144,7 @@ START_TEST(show_gives_the_numbers_of_the_run)
     said.out = NULL;
     HIFDM(0, "show", out);
     ck_assert_msg(strncmp(said.out, summary, strlen(summary)) == 0, "%s\n%s", said.out, summary);
-    OUT("warning: stop: rms_change ended before equilibrium of the form-finding shape: ");
+    OUT("warning: the stopping rule rms_change ended the iteration before equilibrium of the form-finding shape. ");
     free(summary);
 }
 END_TEST

@@ -90,8 +90,8 @@ START_TEST(a_run_without_locks)
 {
     const char *path = file_with("c.yaml", SMALL_SCENE SMALL_GA), *library = sick_machine();
     SHELL(0, "SICK='flock 38 1' LD_PRELOAD=\"$3\" \"$0\" run \"$1\" -o \"$2\" --quiet", path, temp("a.h5"), library);
-    ERR("this file system has no locks (Function not implemented), so hifdm cannot keep a second process from writing "
-        "this result");
+    ERR("this file system has no locks (Function not implemented), so hifdm cannot prevent a second process from "
+        "writing this result");
     SHELL(5, "SICK='flock 37 1' LD_PRELOAD=\"$3\" \"$0\" run \"$1\" -o \"$2\" --quiet", path, temp("b.h5"), library);
     ERR("No locks available");
     HIFDM(0, "run", path, "-o", temp("b.h5"), "--quiet");

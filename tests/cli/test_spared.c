@@ -145,7 +145,7 @@ START_TEST(points_are_not_missing_because_nobody_sees_them)
     for (int i = 0; i < 3; i++) {
         SHELL(5, keep(formatted("cd \"$1\"; export SICK='stat 5 1 s.d/' LD_PRELOAD=\"$2\"; exec \"$0\" %s", words[i])),
               folder, library);
-        ERR(".h5: cannot get its status: Input/output error");
+        ERR(".h5: cannot get the status of this file: Input/output error");
     }
     SHELL(5, "cd \"$1\"; export SICK='realpath 5 1 s.d' LD_PRELOAD=\"$2\"; exec \"$0\" merge s.yaml -o m.h5", folder,
           library);

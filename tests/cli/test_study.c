@@ -282,7 +282,7 @@ START_TEST(check_says_what_a_sweep_would_do)
     OUT("18 done, 0 failed, 0 running, 0 to run");
     OUT("all points have been run");
     HIFDM(2, "check", path, "--set", "form.pretension_N=3");
-    ERR("s.yaml: --set does not work with a study");
+    ERR("s.yaml: the --set option does not work with a study");
 }
 END_TEST
 
@@ -365,7 +365,7 @@ START_TEST(check_tells_the_faults_of_a_study)
     OUT("\npoint "); /* the first that can be run is checked as a case */
     ERR("point scene.paraboloid.focal_length_m=3, scene.paraboloid.rear_distance_m=0.001");
     ERR("point scene.paraboloid.focal_length_m=4, scene.paraboloid.rear_distance_m=0.001");
-    ERR("2 of the 4 points that were tried cannot be run");
+    ERR("2 of the 4 tested points cannot be run");
     file_with("s.yaml", "base: base.yaml\nsweep:\n  scene.paraboloid.rear_distance_m: [0.001, 0.002]\n");
     HIFDM(2, "check", path);
     ERR("point scene.paraboloid.rear_distance_m=0.001");
@@ -379,10 +379,10 @@ START_TEST(show_of_what_is_no_result_says_what_to_do)
 {
     const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5]\n");
     HIFDM(5, "show", path);
-    ERR("s.yaml: is not a result file (HDF5) but a study. `hifdm check ");
+    ERR("s.yaml: this file is not a result file (HDF5) but a study. To check this file, use `hifdm check ");
     ERR("`hifdm merge ");
     HIFDM(5, "show", file_with("base.yaml", NET));
-    ERR("base.yaml: is not a result file (HDF5) but a case. `hifdm check ");
+    ERR("base.yaml: this file is not a result file (HDF5) but a case. To check this file, use `hifdm check ");
     HIFDM(5, "show", file_with("other.txt", "words\n"));
 }
 END_TEST

@@ -107,7 +107,7 @@ START_TEST(what_nets_need_is_named)
     ERR("over: samples needs a section tolerance");
     HIFDM(2, "check",
           file_with("c.yaml", formatted(scene, "{figure: psi, over: samples}", "tolerance: {sigma_cut_m: 1e-5}\n")));
-    ERR("have no EA");
+    ERR("have no stiffness EA");
 }
 END_TEST
 
@@ -116,7 +116,7 @@ START_TEST(quantiles_have_no_derivatives)
     const char *c = survive_case("c.yaml", "ga", "{figure: psi, over: samples, quantile: 0.9}"), *d = temp("d.csv");
     HIFDM(0, "evaluate", c, "--template", d);
     HIFDM(2, "evaluate", c, "--designs", d, "--jacobian", temp("j.csv"));
-    ERR("optimize.objective.0.quantile: quantiles have no derivatives; use take: mean or worst\n");
+    ERR("optimize.objective.0.quantile: quantiles have no derivatives. Use `take: mean` or `take: worst`\n");
 }
 END_TEST
 

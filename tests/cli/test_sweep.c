@@ -28,7 +28,8 @@ START_TEST(sweep_status_and_merge)
 {
     const char *path = study(), *folder = temp("s.d"), *merged = temp("s.h5");
     HIFDM(5, "status", path, "--dir", folder);
-    ERRS("error: %s: there is no such folder of results; 'hifdm sweep' creates it, and --dir names another folder\n",
+    ERRS("error: %s: there is no such folder of results. Run 'hifdm sweep' to create the folder, or use the --dir "
+         "option to select another folder\n",
          folder);
     SHELL(0, "cd \"$1\" && \"$0\" status \"$2\"", temp(""), path); /* not begun */
     OUT("missing   4");
@@ -106,14 +107,14 @@ START_TEST(tasks_that_would_leave_points_out_are_refused)
 {
     const char *path = study();
     HIFDM(2, "sweep", path, "--task", "3", "--tasks", "3");
-    ERR("task 3 of 3: the tasks are numbered from 0");
+    ERR("task 3 of 3 does not exist, because the tasks are numbered from 0");
     HIFDM(2, "sweep", path, "--task", "1");
     HIFDM(2, "sweep", path, "--tasks", "2");
     SHELL(2,
           "SLURM_ARRAY_TASK_ID=5 SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_MIN=3 SLURM_ARRAY_TASK_MAX=5 "
           "exec \"$0\" sweep \"$1\"",
           path);
-    ERR("the Slurm array has gaps");
+    ERR("the task numbers of the Slurm array have gaps");
     HIFDM(2, "sweep", path, "--retry", "everything");
     ERR("must be a list of missing, failed and outdated");
 }
@@ -186,7 +187,7 @@ START_TEST(a_failed_point_stops_no_other)
     HIFDM(3, "sweep", path, "--dir", folder);
     OUT("2 points run");
     OUT("1 of them failed");
-    ERR("error: 1 points failed; 'hifdm status' lists the reasons");
+    ERR("error: 1 points failed. 'hifdm status' lists the reasons");
     HIFDM(0, "status", path, "--dir", folder);
     OUT("failed    1");
     OUT("form.max_iterations=2, form.pretension_N=8: form-finding did not converge in 2 iterations");
@@ -278,7 +279,7 @@ START_TEST(a_case_with_a_sweep_of_its_own)
 {
     const char *path = file_with("one.yaml", SMALL_SCENE "sweep:\n  form.pretension_N: [8, 9, 10]\n  files: all\n");
     HIFDM(2, "run", path, NOWHERE);
-    ERR("has a section sweep; run it with 'hifdm sweep ");
+    ERR("this file has a `sweep` section. Run the study with 'hifdm sweep ");
     HIFDM(0, "check", path);
     HIFDM(0, "sweep", path, "--dir", temp("s.d"), "--quiet");
     HIFDM(0, "merge", path, "--dir", temp("s.d"), "-o", temp("s.h5"));
@@ -321,7 +322,7 @@ START_TEST(a_stopped_sweep_goes_on)
         code = end_by(&s, freeze_when(&s, is_in_the_middle, temp("s.d")) ? SIGTERM : SIGCONT);
     }
     ck_assert_int_eq(code, 75);
-    ck_assert(says(temp("err"), "are missing; run the same command again to resume"));
+    ck_assert(says(temp("err"), "missing points. Run the same command again to resume"));
     HIFDM(0, "status", path, "--dir", temp("s.d"));
     OUT("running   0");
     HIFDM(0, "sweep", path, "--dir", temp("s.d"));

@@ -46,7 +46,7 @@ START_TEST(a_base_case_that_changes_back)
     HIFDM(0, "show", merged);
     OUT("4 done, 0 failed, 0 missing");
     HIFDM(5, "export", merged, "--csv", temp("csv"));
-    ERRS("error: %s: is the merged table of a sweep; `hifdm report` reads it", merged);
+    ERRS("error: %s: this file is the merged table of a sweep. Use `hifdm report` to read the table", merged);
     study_of(SMALL_SCENE SMALL_GA);
     HIFDM(0, "status", temp("study.yaml"), "--dir", folder);
     OUT("done      4");
@@ -133,7 +133,8 @@ START_TEST(a_begun_point_with_a_foreign_journal)
 {
     const char *folder = temp("s.d"), *path = begun_study(folder);
     SHELL(0, "cd \"$1\" && j=$(echo *.journal) && rm $j && echo 'a diary' >../diary && ln -s ../diary $j", folder);
-    retry_helps(path, folder, "is not a journal of hifdm, but has the name of one. Delete it, use --restart");
+    retry_helps(path, folder,
+                "is not a journal of hifdm, but the file has the name of a journal. Delete this file, use --restart");
     ck_assert(file_is(temp("diary"), "a diary\n")); /* only its second name went */
 }
 END_TEST
@@ -169,7 +170,7 @@ START_TEST(a_name_that_is_taken_meanwhile)
     HIFDM(0, "status", path, "--dir", folder);
     OUT("failed    1");
     OUT("done      2");
-    OUT("was created, replaced or removed by another process during the run; this run's result is ");
+    OUT("another process created, replaced or removed this file during the run; this run's result is ");
     HIFDM(0, "sweep", path, "--dir", folder, "--retry", "failed");
     HIFDM(0, "status", path, "--dir", folder);
     OUT("done      3");
@@ -181,11 +182,12 @@ START_TEST(a_foreign_journal_goes_with_restart_only)
     const char *c = file_with("c.yaml", SMALL_SCENE SMALL_GA), *path = temp("run.h5");
     file_with("run.h5.journal", "a diary");
     HIFDM(5, "run", c, "-o", path);
-    ERRS("error: %s: %s.journal is not a journal of hifdm, but has the name of one. Delete it, use --restart", path,
-         path);
+    ERRS("error: %s: %s.journal is not a journal of hifdm, but the file has the name of a journal. Delete this file, "
+         "use --restart",
+         path, path);
     ck_assert(file_is(temp("run.h5.journal"), "a diary"));
     HIFDM(0, "run", c, "-o", path, "--restart");
-    ERRS("warning: %s: %s.journal was not a journal of hifdm and is replaced", path, path);
+    ERRS("warning: %s: %s.journal was not a journal of hifdm, so hifdm replaced this file", path, path);
     ck_assert(!is_there(temp("run.h5.journal")));
     EXPECT(path, "--", "a.attrs['finished'] == 1");
 }
@@ -200,17 +202,17 @@ START_TEST(what_is_no_file_in_the_folder_is_named)
     for (int k = 0; k < 2; k++) {
         SHELL(0, "mkdir -p \"$1\" && $3 \"$2\"", folder, there, make[k]);
         HIFDM(5, "status", path, "--dir", folder);
-        ERRS("error: %s: is not a regular file; remove it\n", there);
+        ERRS("error: %s: this is not a regular file. Remove it\n", there);
         HIFDM(5, "merge", path, "--dir", folder, "-o", temp("s.h5"));
-        ERRS("error: %s: is not a regular file; remove it\n", there);
+        ERRS("error: %s: this is not a regular file. Remove it\n", there);
         HIFDM(5, "sweep", path, "--dir", folder);
-        ERRS("error: %s: is not a regular file; remove it\n", there);
+        ERRS("error: %s: this is not a regular file. Remove it\n", there);
         SHELL(0, "rm -r \"$1\"", there);
     }
     HIFDM(0, "sweep", path, "--dir", folder, "--quiet");
     SHELL(0, "mkfifo \"$1\"", temp("pipe.h5"));
     HIFDM(5, "merge", path, "--dir", folder, "-o", temp("pipe.h5"));
-    ERRS("error: %s: is not a regular file; use -o to choose a file name", temp("pipe.h5"));
+    ERRS("error: %s: this is not a regular file. Use -o to choose a file name", temp("pipe.h5"));
 }
 END_TEST
 
@@ -222,7 +224,7 @@ START_TEST(a_table_that_is_too_long_is_not_read)
     SHELL(0, "mkdir \"$1\" && truncate -s 40G \"$2\"", folder, there);
     for (int k = 0; k < 3; k++) {
         HIFDM(5, command[k], path, "--dir", folder);
-        ERRS("error: %s: is not a table of hifdm, because it is longer than 4096 MB; remove it\n", there);
+        ERRS("error: %s: this file is larger than 4096 MB, so it is not a table of hifdm. Remove it\n", there);
     }
 }
 END_TEST

@@ -96,7 +96,7 @@ START_TEST(samples_tell_the_loss_of_their_far_field)
     HIFDM(0, "check",
           file_with("f.yaml", BUILT_SCENE "surface: {frequencies_Hz: [2e9], pattern: {feed: {kind: "
                                           "plane_wave}}}\noptimize: {method: lm, objective: [{figure: gain}]}\n"));
-    ERR("f.yaml:6:36: optimize.objective.0: gain: even at its target positions the net loses ");
+    ERR("f.yaml:6:36: optimize.objective.0: gain: even at its target positions, the net loses ");
 }
 END_TEST
 
@@ -108,8 +108,8 @@ START_TEST(samples_tell_each_loss_of_gain)
                                                     "  require: [{measure: fit_gain_loss_dB, at_most: 1}]}\n"),
                *path = temp("a.h5");
     HIFDM(0, "tolerance", c, "-o", path, "--quiet");
-    ERR("warning: tolerance.require.0.measure: fit_gain_loss_dB counts the nodes only; facet_fit_gain_loss_dB also "
-        "counts");
+    ERR("warning: tolerance.require.0.measure: fit_gain_loss_dB counts the nodes only, but facet_fit_gain_loss_dB also "
+        "includes");
     EXPECT(
         path, "--",
         "all(np.abs(a['tolerance/sample'][p + 'gain_loss_dB'][:] / a['tolerance/sample'][p + 'half_path_rms_m'][:]**2 "
@@ -199,7 +199,7 @@ START_TEST(a_design_outlives_samples_that_fail)
     for (int i = 0; i < 2; i++) {
         HIFDM(5, "tolerance", c, "-o", path, "--tasks", "2");
         ERR("belongs to another case");
-        ERR("is unfinished; run the same command again to resume");
+        ERR("this result is unfinished. Run the same command again to resume");
         EXPECT(path, "--", "'tolerance' not in a", "len(a['form/length_m']) > 0", "not a.attrs['finished']");
     }
     SHELL(0, "rm \"$1\"", journal);
@@ -274,10 +274,10 @@ START_TEST(faults_are_named)
         {"  truss: [{part: truss, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 5}]\n" SMALL_TRUSS,
          "6:57: tolerance.truss.1.part: has a row already"},
         {"  truss: [{part: truss, sigma_temperature_K: 5}]\n" SMALL_TRUSS,
-         "6:18: tolerance.truss.0.part: the expansion of the truss is not known. Add truss.expansion_per_K; use 0 for "
-         "a truss that does not expand"},
+         "6:18: tolerance.truss.0.part: the truss has no thermal expansion coefficient. Add the key "
+         "truss.expansion_per_K (0 for a truss that does not expand)"},
         {"  truss: [{part: longeron, sigma_temperature_K: 5}]\n" SMALL_TRUSS "  expansion_per_K: 1e-6\n",
-         "6:18: tolerance.truss.0.part: the truss has no members of unit longeron"},
+         "6:18: tolerance.truss.0.part: the truss has no members of the unit 'longeron'"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m}]\n", "has no limit; give at_most, at_least or both"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_half_path_rms_m, at_most: 1}]\n",
          "7:23: tolerance.require.0.measure: is not measured: add a section surface"},
@@ -289,7 +289,8 @@ START_TEST(faults_are_named)
          "needs a section surface.pattern, which says what illuminates the reflector"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: pattern_loss_dB, at_most: 1}]\nsurface: {frequencies_Hz: [60e9], "
          "pattern: {theta_deg: [-1, 1]}}\n",
-         "7:23: tolerance.require.0.measure: pattern_loss_dB is not measured: its facets are too coarse"},
+         "7:23: tolerance.require.0.measure: hifdm cannot compute the measure pattern_loss_dB: its facets are too "
+         "coarse"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: tension_min_N, at_most: 1}]\n", "asks for slack cables"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: psi_m, at_most: -1e-3}]\n", "is below 0, which no net can reach"},
         {"  sigma_cut_m: 1e-4\n  require: [{measure: fit_gain_loss_dB, at_most: -1}]\nsurface: {frequencies_Hz: "
@@ -310,11 +311,11 @@ START_TEST(faults_are_named)
     }
     HIFDM(2, "tolerance", file_with("f.yaml", SMALL_SCENE "tolerance: {sigma_cut_m: 1e-4}\n"), NOWHERE);
     ERR("f.yaml:3:26: tolerance.sigma_cut_m: ");
-    ERR("cables have no EA");
+    ERR("cables have no stiffness EA");
     HIFDM(2, "tolerance", file_with("f.yaml", BUILT_SCENE), NOWHERE);
     ERR("has no section tolerance");
     HIFDM(2, "tolerance", built_case("random"), NOWHERE, "--task", "3", "--tasks", "3");
-    ERR("--task 3: the 3 tasks are numbered 0 to 2");
+    ERR("--task 3 is out of range, because the 3 tasks are numbered from 0 to 2");
 }
 END_TEST
 
@@ -374,14 +375,13 @@ START_TEST(slack_nets_are_warned_of)
     double error_mm, length_m, error_N, EA_N, tension_N;
     int n_slack, n;
     HIFDM(0, "run", c, "-o", out);
-    const char *at = strstr(said.err, "warning: tolerance: slack cables in ");
+    const char *at = strstr(said.err, "warning: tolerance: cables are slack in ");
     ck_assert_msg(at != NULL, "%s", said.err);
-    ck_assert_int_eq(
-        sscanf(at,
-               "warning: tolerance: slack cables in %d of %d samples: an error of %lf mm in the %lf m of cable "
-               "'%*[^']' (EA %lf N) changes its tension of %lf N by up to %lf N",
-               &n_slack, &n, &error_mm, &length_m, &EA_N, &tension_N, &error_N),
-        7);
+    ck_assert_int_eq(sscanf(at,
+                            "warning: tolerance: cables are slack in %d of %d samples: an error of %lf mm in the %lf m "
+                            "of cable '%*[^']' (EA %lf N) changes its tension of %lf N by up to %lf N",
+                            &n_slack, &n, &error_mm, &length_m, &EA_N, &tension_N, &error_N),
+                     7);
     ck_assert(n == 40 && n_slack > 2 && error_mm == 1 && EA_N == 47000 && tension_N < error_N);
     ck_assert_double_eq_tol(error_N, EA_N * 1e-3 / length_m, 0.01 * error_N); /* printed to three digits */
     HIFDM(0, "run", c, "-o", out, "--restart", "--set", "tolerance.sigma_cut_m=1e-6");
@@ -399,7 +399,7 @@ START_TEST(slack_nets_are_warned_of)
           file_with("loose.yaml", "scene: {import: {nodes: n.csv, cables: e.csv}}\n"
                                   "tolerance: {sigma_cut_m: 1e-5, samples: 40}\n"),
           "-o", out, "--restart"); /* no error makes this cable slack */
-    ERR("tolerance: slack cables in 40 of 40 samples: 1 is slack in the design already, such as 's'. Raise the "
+    ERR("tolerance: cables are slack in 40 of 40 samples: 1 is slack in the design already, such as 's'. Raise the "
         "minimum");
 }
 END_TEST

@@ -100,7 +100,7 @@ START_TEST(exported_truss_can_be_imported)
     HIFDM(5, "run", again, "-o", keep(formatted("%s/members.csv", folder)), "--force");
     ERR("is an input of this run");
     HIFDM(5, "export", one, "--csv", folder);
-    ERR("exists; use --force");
+    ERR("already exists. Use --force");
 }
 END_TEST
 
@@ -143,7 +143,7 @@ static const struct {
      "truss.depth_m: has no effect beside truss.import"},
     {2, "truss: {import: {nodes: n.csv, members: m.csv}}\n", "n.csv: cannot open"},
     {4, "truss: {joints: pinned}\n", "error: truss: node '"},
-    {4, "truss: {joints: pinned}\n", "without force: the truss is a mechanism"},
+    {4, "truss: {joints: pinned}\n", "without force, because the truss is a mechanism"},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };
 
@@ -175,7 +175,7 @@ START_TEST(imported_net)
     const char *set_nodes = keep(formatted("truss.import.nodes=%s", nodes));
     const char *set_members = keep(formatted("truss.import.members=%s", members));
     HIFDM(2, "check", path, "--set", set_nodes, "--set", set_members);
-    ERR("truss: net support 'd' has no attachment: the nearest truss node, 'C', is 0.1 m away");
+    ERR("truss: net support 'd' has no attachment, because the nearest truss node 'C' is 0.1 m away");
     HIFDM(0, "check", path, "--set", set_nodes, "--set", set_members, "--set", "truss.match_tolerance_m=0.11");
     OUT("  truss         4 nodes, 3 members; 0.00 kg; 3 attachments\n");
 }

@@ -39,7 +39,7 @@ START_TEST(the_command_line_is_shown)
     SHOWN(2, "run", "--" EVIL);
     ERR(EVIL_SHOWN);
     SHOWN(2, "run", EVIL, EVIL);
-    ERR("error: '" EVIL_SHOWN "' is one argument too many");
+    ERR("error: '" EVIL_SHOWN "' is an unexpected argument");
     SHOWN(2, "run", CHEN, "--threads", EVIL);
     SHOWN(2, "run", CHEN, "--set", EVIL);
     SHOWN(2, "run", CHEN, "--set", "form.method=" EVIL);

@@ -76,7 +76,7 @@ START_TEST(paraview_files_of_facets)
     demand_vtk(out, folder, "form form_facets target target_facets");
     SHELL(0, "cd \"$1\" && rm form.hdf target.hdf target_facets.hdf", folder);
     HIFDM(5, "export", out, "--vtk", folder);
-    ERR("form_facets.hdf exists; use --force to replace it");
+    ERR("the file form_facets.hdf already exists. Use --force to replace it");
 }
 END_TEST
 
@@ -99,8 +99,8 @@ START_TEST(mesh_makes_pillows)
     demand_vtk(out, temp("vtk"), "form form_facets target target_facets");
     HIFDM(0, "run", path, "-o", out, "--force", "--json", "--set", grid[_i], "--set",
           "surface.mesh_tension_N_per_m=100");
-    ERR("warning: surface: in the shape of stage form the mesh pulls on a cable with N l = ");
-    ERR("so the facets have no errors. Raise the tensions of the cables, or lower surface.mesh_tension_N_per_m\n");
+    ERR("warning: surface: in the shape of stage form, the mesh pulls on a cable with N l = ");
+    ERR("so the facets have no errors. Raise the cable tensions, or lower surface.mesh_tension_N_per_m\n");
     EXPECT(out_as("m.json"), out, "--", "a['form']['surface']['facet_normal_rms_m'] is None",
            "a['form']['surface']['pillow_rms_m'] is None", "a['form']['surface']['mesh_pull_ratio'] > 1",
            "np.isnan(b['surface/form'].attrs['facet_fit_normal_rms_m'])");
@@ -118,17 +118,17 @@ START_TEST(paraview_files_of_an_imported_net)
                                 "bc,b,c,inner,tension,10,\nbd,b,d,inner,elastic,7,5000\n");
     const char *out = temp("net.h5"), *folder = temp("vtk"), *form = temp("vtk/form.hdf");
     HIFDM(0, "run", path, "-o", out, "--quiet");
-    ERR("warning: slack cables in the form-finding shape (1): bd\n");
+    ERR("warning: these cables of the form-finding shape are slack (1): bd\n");
     HIFDM(0, "export", out, "--vtk", folder);
     demand_vtk(out, folder, "form target");
     write_file(form, "mine");
     HIFDM(5, "export", out, "--vtk", folder);
-    ERRS("error: %s exists; use --force to replace it", form);
+    ERRS("error: the file %s already exists. Use --force to replace it", form);
     ck_assert(file_is(form, "mine"));
     HIFDM(0, "export", out, "--vtk", folder, "--force");
     demand_vtk(out, folder, "form target");
     HIFDM(2, "export", out, "--vtk", folder, "--stage", "form");
-    ERR("error: --stage cannot be combined with --vtk alone, which writes every shape\n");
+    ERR("error: the option --stage cannot be combined with --vtk alone, because that option exports all shapes\n");
     HIFDM(5, "export", out, "--vtk", temp("no/such/folder"));
     ERR("cannot create this folder");
     HIFDM(5, "export", out, "--vtk", form); /* below an ordinary file */
@@ -251,19 +251,19 @@ START_TEST(cut_list_needs_EA)
     const char *out = temp("f.h5"), *cut = temp("cut.csv");
     HIFDM(0, "run", file_with("f.yaml", SMALL_SCENE), "-o", out, "--quiet");
     HIFDM(2, "export", out, "--cutlist", cut);
-    ERR("inner cables have no EA, which cutting lengths need, such as 'n");
-    ERR("Add scene.EA_inner_N, or the column EA_N of an imported net, and run again\n");
-    ERR("boundary cables have no EA");
+    ERR("inner cables have no stiffness EA, which cutting lengths need. One of these cables is 'n");
+    ERR("Add the key scene.EA_inner_N, or add the column EA_N to the table of an imported net, and run again\n");
+    ERR("boundary cables have no stiffness EA");
     HIFDM(0, "run", temp("f.yaml"), "-o", out, "--quiet", "--force", "--set", "scene.EA_inner_N=5e4");
     HIFDM(2, "export", out, "--cutlist", cut);
-    ERR("boundary cables have no EA");
-    ck_assert_ptr_null(strstr(said.err, "inner cables have no EA"));
+    ERR("boundary cables have no stiffness EA");
+    ck_assert_ptr_null(strstr(said.err, "inner cables have no stiffness EA"));
     ck_assert(!is_there(cut));
     HIFDM(0, "run", temp("f.yaml"), "-o", out, "--quiet", "--force", "--set", "scene.EA_inner_N=5e4", "--set",
           "scene.EA_boundary_N=6e4");
     write_file(temp("cut_totals.csv"), "mine");
     HIFDM(5, "export", out, "--cutlist", cut); /* none of the three unless all three */
-    ERR("cut_totals.csv exists; use --force to replace it");
+    ERR("the file cut_totals.csv already exists. Use --force to replace it");
     ck_assert(!is_there(cut));
     HIFDM(0, "export", out, "--cutlist", cut, "--force");
     EXPECT(cut, "--", "{(r['group'], r['EA_N']) for r in a} == {('inner', '50000'), ('boundary', '60000')}");

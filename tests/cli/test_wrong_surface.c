@@ -80,24 +80,24 @@ START_TEST(net_beside_its_surface_is_refused)
 {
     const char *path = grid_net(true, "  kind: parabolic_cylinder\n  focal_length_m: 4\n");
     HIFDM(2, "run", path, NOWHERE);
-    ERRS("error: %s:5:19: surface.focal_length_m: the inner nodes are not on the parabolic_cylinder with f = 4 m: the "
-         "RMS of their heights above it is 51.03 mm, and the farthest is 'n6', line 8, 62.5 mm (the RMS above the "
-         "parabolic_cylinder z = x^2/(4f) is 51.03 mm, and above the paraboloid z = (x^2 + y^2)/(4f) it is 0 mm); "
-         "give surface.kind: paraboloid\n",
+    ERRS("error: %s:5:19: surface.focal_length_m: the inner nodes are not on the parabolic_cylinder with f = 4 m. The "
+         "RMS height error of the inner nodes is 51.03 mm, and node 'n6', line 8 has the maximum error of 62.5 mm. The "
+         "RMS height error is 51.03 mm for the parabolic_cylinder z = x^2/(4f), and 0 mm for the paraboloid z = (x^2 + "
+         "y^2)/(4f); give surface.kind: paraboloid\n",
          path);
     HIFDM(2, "check", path);
     ERR("surface.focal_length_m: the inner nodes are not on the parabolic_cylinder");
     path = grid_net(false, "  kind: auto\n");
     HIFDM(2, "check", path, "--set", "surface.kind=paraboloid", "--set", "surface.focal_length_m=4");
-    ERR("error: --set surface.focal_length_m: the inner nodes are not on the paraboloid with f = 4 m: the RMS of "
-        "their heights above it is 51.03 mm");
+    ERR("error: --set surface.focal_length_m: the inner nodes are not on the paraboloid with f = 4 m. The RMS height "
+        "error of the inner nodes is 51.03 mm");
     ERR("give surface.kind: parabolic_cylinder\n");
     path = grid_net(false, "  kind: auto\n  focal_length_m: 8\n"); /* neither: another focal length */
     HIFDM(2, "check", path);
     ERR("its vertex is the origin, its axis z, its focal length this one\n");
     const char *small = file_with("s.yaml", SMALL_SCENE "surface:\n  kind: paraboloid\n");
     HIFDM(2, "check", small);
-    ERRS("error: %s:4:9: surface.kind: the inner nodes are not on the paraboloid with f = 2 m: ", small);
+    ERRS("error: %s:4:9: surface.kind: the inner nodes are not on the paraboloid with f = 2 m. ", small);
     ERR("give surface.kind: parabolic_cylinder\n");
 }
 END_TEST
@@ -136,8 +136,8 @@ START_TEST(far_nodes_are_told)
     HIFDM(0, "check", net_with(nodes, SLACK_CABLES "ef,e,f,inner,tension,1\neg,e,g,inner,tension,1\n"));
     ERRS("warning: %s:7: node 'f' is 999 m from the middle of the net, ", temp("nodes.csv"));
     ERRS("warning: %s:8: node 'g' is 199 m from the middle of the net, ", temp("nodes.csv"));
-    ck_assert_int_eq(count_of(said.err, "times as far as the others: are all coordinates in m?\n"), 2);
-    ERR("warning: scene: the net is 1000 m across: are all lengths in m?\n");
+    ck_assert_int_eq(count_of(said.err, "times as far as the other nodes. Are all coordinates in m?\n"), 2);
+    ERR("warning: scene: the net is 1000 m across. Are all lengths in m?\n");
     HIFDM(0, "check", net_with(SLACK_NODES, SLACK_CABLES));
     ck_assert_ptr_null(strstr(said.err, "as far as"));
     ck_assert_ptr_null(strstr(said.err, "across"));
@@ -150,8 +150,8 @@ START_TEST(lengths_in_another_unit_are_told)
                                 "d,1,1,0,support\n";
     char cables[2048] = "id,i,j,group,law,value,EA_N\nab,a,b,inner,length,1005,\nbc,b,c,inner,elastic,0.498,1e4\n";
     HIFDM(0, "check", net_with(nodes, formatted("%sbd,b,d,inner,elastic,1.5,1e4\n", cables)));
-    ERRS("warning: %s:2: cable 'ab' is 1005 m long by its law, 1e+03 times the distance between its nodes: is its "
-         "length in m?\n",
+    ERRS("warning: %s:2: cable 'ab' is 1005 m long by its law, which is 1e+03 times the distance between its nodes. Is "
+         "this length in m?\n",
          temp("cables.csv"));
     ERRS("warning: %s:3: cable 'bc' is 0.498 m long by its law, 0.496 times ", temp("cables.csv"));
     ck_assert_int_eq(count_of(said.err, "by its law"), 2);
@@ -159,7 +159,7 @@ START_TEST(lengths_in_another_unit_are_told)
         snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "t%d,b,d,inner,length,1600,\n", i);
     HIFDM(0, "check", net_with(nodes, cables));
     ck_assert_int_eq(count_of(said.err, "by its law"), 5);
-    ERR("warning: scene: 3 more cables have other lengths than the distances between their nodes\n");
+    ERR("warning: scene: 3 more cables have lengths that differ from the distances between their nodes\n");
 }
 END_TEST
 
@@ -186,12 +186,12 @@ START_TEST(a_range_beyond_the_values_is_told)
     HIFDM(0, "check", path);
     ERR("optimize.variables.0.range: 500 is ");
     ERR(" times the maximum value of this row, ");
-    ERR("; for a relative range, write 500 %\n");
-    ck_assert_int_eq(count_of(said.err, "for a relative range"), 1);
+    ERR(". For a relative range, write 500 %\n");
+    ck_assert_int_eq(count_of(said.err, "For a relative range"), 1);
     HIFDM(0, "check", file_with("r.yaml", formatted(row, "50 %")));
-    ck_assert_ptr_null(strstr(said.err, "for a relative range"));
+    ck_assert_ptr_null(strstr(said.err, "For a relative range"));
     HIFDM(0, "check", file_with("r.yaml", formatted(row, "500, bounds: [1, 600]")));
-    ck_assert_ptr_null(strstr(said.err, "for a relative range"));
+    ck_assert_ptr_null(strstr(said.err, "For a relative range"));
 }
 END_TEST
 
@@ -216,13 +216,14 @@ START_TEST(focal_length_out_of_proportion_is_told)
 {
     const char *path = file_with("f.yaml", SMALL_SCENE);
     HIFDM(0, "check", path, "--set", "scene.parabolic_cylinder.focal_length_m=41");
-    ERR("warning: --set scene.parabolic_cylinder.focal_length_m: 41 m is 20 times the aperture of 2 m; reflectors "
-        "have less than 20 times. Is this value in m?\n");
+    ERR("warning: --set scene.parabolic_cylinder.focal_length_m: the focal length of 41 m is 20 times the aperture of "
+        "2 m, but the usual maximum for reflectors is 20 times. Is this value in m?\n");
     HIFDM(0, "check", path, "--set", "scene.parabolic_cylinder.focal_length_m=40");
     ck_assert_ptr_null(strstr(said.err, "in m?"));
     path = grid_net(true, "  kind: paraboloid\n  focal_length_m: 4000\n");
     HIFDM(2, "check", path); /* and it is not on this surface */
-    ERRS("warning: %s:5:19: surface.focal_length_m: 4000 m is 1000 times the aperture of 4 m; ", path);
+    ERRS("warning: %s:5:19: surface.focal_length_m: the focal length of 4000 m is 1000 times the aperture of 4 m, ",
+         path);
 }
 END_TEST
 
@@ -231,12 +232,14 @@ START_TEST(net_that_collapses_to_the_plane_of_its_supports_is_told)
 {
 #define BOWL "id,x_m,y_m,z_m,role,Fz_N\na,1,0,1,support,\nb,-1,0,1,support,\nc,0,1,1,support,\nd,0,-1,1,support,\n"
 #define STAR "id,i,j,group,law,value\nae,a,e,inner,tension,1\nbe,b,e,inner,tension,1\nce,c,e,inner,tension,1\n"
-#define FLAT "warning: scene: all supports are in one plane, and no load, tie or strut holds the net away from it. "
+#define FLAT                                                                                                           \
+    "warning: scene: all supports are in one plane, and no load, tie or strut holds the net away from the supports. "
     HIFDM(0, "run", net_with(BOWL "e,0,0,0.7,inner,\n", STAR "de,d,e,inner,tension,1\n"), "-o", temp("b.h5"), "--json");
-    ERR(FLAT "The net collapses there with any tensions, and its inner nodes are at least 300 mm RMS from their "
-             "target positions. Put supports on the surface, tie the net to another net, or add loads\n");
+    ERR(FLAT "With any tensions, the net collapses to its supports, so the inner nodes are at least 300 mm RMS from "
+             "their target positions. Put supports on the surface, tie the net to another net, or add loads\n");
     EXPECT(out_as("b.json"), temp("b.h5"), "--", "near(a['form']['psi_m'], 0.3, 1e-9)",
-           "any('collapses there' in w for w in a['warnings'])", "'collapses there' in attribute(b, 'warnings')");
+           "any('collapses to its supports' in w for w in a['warnings'])",
+           "'collapses to its supports' in attribute(b, 'warnings')");
     static const char *const other[][2] = {
         {BOWL "e,0,0,0.7,inner,-1\n", STAR "de,d,e,inner,tension,1\n"},
         {BOWL "e,0,0,0.7,inner,\nf,0,0,0,support,\n", STAR "de,d,e,inner,tension,1\nef,e,f,inner,tension,1\n"},

@@ -97,11 +97,11 @@ class Errors(unittest.TestCase):
             "scene: the set 'a b' must be made of letters": {"sets": {"a b": [0]}},
             "scene: the set 'a' names a cable that there is not": {"sets": {"a": [0, 4]}},
             "scene: the set 'a' must name each cable once": {"sets": {"a": [1, 1]}},
-            "scene: every node is a support": {"role": "support"},
+            "scene: the net has no free nodes": {"role": "support"},
             "scene: 5 nodes and 0 cables do not form a net": {"end": END[:0]},
             "arrays:": {"form": {"pretention_N": 1}},
             "unknown key; did you mean 'pretension_N'": {"form": {"pretention_N": 1}},
-            "a net from arrays needs a section scene with an import of nodes and cables, and no facets":
+            "a net from arrays needs a `scene` section that imports nodes and cables but no facets":
                 {"set": {"scene.import.facets": "facets.csv"}},
         }.items():
             self.assertEqual(self.refused(hifdm.HifdmError, part, self.net, **arguments).status, "bad_case")

@@ -42,7 +42,7 @@ count() { "$hifdm" status study.yaml --dir "$1" --json |
     "$python" -c 'import json,sys; print(json.load(sys.stdin)[sys.argv[1]])' "$2"; }
 is_state() { scontrol -o show job "$1" 2>/dev/null | grep -q "JobState=$2"; }
 is_gone() { [ -z "$(squeue -h -j "$1" 2>/dev/null)" ]; }
-was_told_to_stop() { cat hifdm-sweep-*.log | grep -q 'interrupted: '; }
+was_told_to_stop() { cat hifdm-sweep-*.log | grep -q 'the sweep was interrupted'; }
 is_there() { [ -s "$1" ]; }
 
 # ---- The study: eight points of about a second -----------------------------------------------------------------------
@@ -102,7 +102,7 @@ within 60 is_there pid.1
 high=$(sbatch --parsable --partition=high --cpus-per-task=2 --output=high.log --wrap='sleep 1')
 within 60 is_gone "$high"
 within 60 was_told_to_stop
-echo "preempted: $(cat hifdm-sweep-*.log | grep -c 'interrupted: ') tasks were told to stop and did"
+echo "preempted: $(cat hifdm-sweep-*.log | grep -c 'the sweep was interrupted') tasks were told to stop and did"
 for task in 0 1 2; do # after preemption Slurm waits two minutes as well
     scontrol update jobid="${job}_$task" starttime=now 2>/dev/null || true
 done

@@ -56,7 +56,7 @@ START_TEST(angles_that_miss_the_beam_are_told)
 {
     const char *h5 = keep(temp("c.h5"));
     HIFDM(0, "run", OFFSET_REFLECTOR, AT_1_AND_2_GHZ, "--set", "surface.pattern.n_theta=41", "-o", h5);
-    ERR("warning: surface.pattern: in 3 of 6 cuts of stage form, such as phi 0 deg at 2 GHz, steps of 0.25 deg are "
+    ERR("warning: surface.pattern: in 3 of 6 cuts of stage form, such as phi 0 deg at 2 GHz, the steps of 0.25 deg are "
         "coarse");
     EXPECT(h5, "--",
            "all((a['pattern/form/' + n][1] != a['pattern/form/' + n][1]).all() for n in "
@@ -75,7 +75,7 @@ START_TEST(nothing_is_done_unasked)
     ck_assert(!strstr(said.out, "\n  pattern  "));
     EXPECT(h5, "--", "'pattern' not in a");
     HIFDM(2, "export", h5, "--pattern", temp("p.csv"));
-    ERR("this shape has no far field, because its case has no surface.pattern");
+    ERR("this shape has no far field, because the case has no section surface.pattern");
 }
 END_TEST
 
@@ -109,23 +109,23 @@ START_TEST(faults_have_their_line)
     ERRS("error: %s:7:19: surface.pattern.feed.position_m: has no meaning for a plane_wave, which comes along -z",
          path);
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, -3]");
-    ERR("error: --set surface.pattern.feed.position_m: from (0, 0, -3) m the feed illuminates 150 of 150 facets from "
-        "behind or not at all; the feed must be above all facets and aim at them\n");
+    ERR("error: --set surface.pattern.feed.position_m: from (0, 0, -3) m, the feed illuminates 150 of 150 facets from "
+        "behind or not at all. Place the feed above all facets, and aim the feed at the facets\n");
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]");
     ck_assert(!strstr(said.err, "coarse"));
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.frequencies_Hz=[1e9, 40e9]");
-    ERR("warning: surface.pattern: at 40 GHz the facets are coarse. ");
+    ERR("warning: surface.pattern: at 40 GHz, the facets are coarse. ");
     ERR(" facets instead of 150 would lose 1 dB\n");
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.pattern.feed.aim_m=[0, 0, 2]");
     ERR("error: --set surface.pattern.feed.aim_m: the feed at (0, 0, 2) m cannot aim at its own position\n");
     HIFDM(2, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.frequencies_Hz=[1e9, 1e15]");
-    ERR("error: --set surface.frequencies_Hz: at 1e+06 GHz the far field needs ");
+    ERR("error: --set surface.frequencies_Hz: at 1e+06 GHz, the far field needs ");
     HIFDM(0, "check", path, "--set", "surface.pattern.feed.position_m=[0, 0, 2]", "--set",
           "surface.frequencies_Hz=[1e8]");
-    ERR(" wavelengths across: physical optics does not hold below about 5\n");
+    ERR(" wavelengths across, but physical optics is valid only above about 5 wavelengths\n");
     OUT("                far field at 0.1 GHz: ");
 }
 END_TEST

@@ -182,11 +182,11 @@ START_TEST(what_is_no_ordinary_file_is_named_and_not_read)
 {
     static const struct {
         const char *name, *words;
-    } other[] = {{"pipe", "pipe: is a pipe; name a regular file"},
-                 {"folder", "folder: is a folder; name"},
-                 {"socket", "socket: is a socket; name"},
-                 {"zero", "zero: is a device; name"},
-                 {"long", "long: is longer than 1024 MB"}};
+    } other[] = {{"pipe", "pipe: this is a pipe. Give the name of a regular file"},
+                 {"folder", "folder: this is a folder. Give"},
+                 {"socket", "socket: this is a socket. Give"},
+                 {"zero", "zero: this is a device. Give"},
+                 {"long", "long: this file is larger than 1024 MB"}};
     struct sockaddr_un address = {.sun_family = AF_UNIX, .sun_path = "socket"}; /* a name of at most 107 bytes */
     ck_assert_int_eq(chdir(temp_path("")), 0);
     ck_assert_int_eq(mkfifo("pipe", 0600), 0);

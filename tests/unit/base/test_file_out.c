@@ -317,7 +317,7 @@ START_TEST(links_of_others_are_refused)
     ck_assert_int_eq(file, HF_IO);
     ck_assert_int_eq(folder, HF_IO);
     ck_assert_int_eq(messages.n_error, 2);
-    ck_assert_ptr_nonnull(strstr(messages.text, "their_link: is a symbolic link of another user"));
+    ck_assert_ptr_nonnull(strstr(messages.text, "their_link: this symbolic link belongs to another user"));
     hf_messages_free(&messages);
     demand_text(victim, "mine");
     ck_assert_int_eq(lstat(link, &info), 0);
@@ -352,7 +352,7 @@ START_TEST(folders_behind_links_of_others_are_refused)
         pretended_user = 815;
         hf_status status = hf_file_out_folder(path, &messages);
         pretended_user = 0;
-        demand_refused(status, "shared/their: is a symbolic link of another user", &messages);
+        demand_refused(status, "shared/their: this symbolic link belongs to another user", &messages);
     }
     for (int is_shared = 1; is_shared >= 0; is_shared--) {
         ck_assert_int_eq(chmod(folder, is_shared ? 01777 : 0755), 0);
@@ -360,13 +360,13 @@ START_TEST(folders_behind_links_of_others_are_refused)
         pretended_user = 815;
         hf_status file = hf_file_out_target(path, target, &messages);
         pretended_user = 0;
-        if (is_shared) demand_refused(file, "shared/their: is a symbolic link", &messages);
+        if (is_shared) demand_refused(file, "shared/their: this symbolic link", &messages);
         if (!is_shared) ck_assert_int_eq(file, HF_OK);
         snprintf(path, sizeof path, "%s/sub", link);
         pretended_user = 815;
         hf_status below = hf_file_out_folder(path, &messages);
         pretended_user = 0;
-        if (is_shared) demand_refused(below, "shared/their: is a symbolic link", &messages);
+        if (is_shared) demand_refused(below, "shared/their: this symbolic link", &messages);
         if (!is_shared) ck_assert_int_eq(below, HF_OK);
     }
     ck_assert_int_eq(count_in(victim), 1);
@@ -390,7 +390,7 @@ START_TEST(links_of_others_to_devices_are_refused)
     pretended_user = 815;
     hf_status status = hf_file_out_target(link, target, &messages);
     pretended_user = 0;
-    demand_refused(status, "their_device: is a symbolic link of another user", &messages);
+    demand_refused(status, "their_device: this symbolic link belongs to another user", &messages);
 }
 END_TEST
 
@@ -403,8 +403,8 @@ START_TEST(only_ordinary_files_are_replaced)
     const char *pipe = temp_path("pipe"), *link = temp_path("to_pipe");
     ck_assert_int_eq(mkfifo(pipe, 0600), 0);
     ck_assert_int_eq(symlink(pipe, link), 0);
-    demand_refused(hf_file_out_begin(pipe, &f, &messages), "pipe: is not a regular file; choose", &messages);
-    demand_refused(hf_file_out_write(link, put_text, "x", &messages), "to_pipe: is not a regular", &messages);
+    demand_refused(hf_file_out_begin(pipe, &f, &messages), "pipe: this is not a regular file. Choose", &messages);
+    demand_refused(hf_file_out_write(link, put_text, "x", &messages), "to_pipe: this is not a regular", &messages);
     ck_assert_int_eq(lstat(pipe, &info), 0);
     ck_assert(S_ISFIFO(info.st_mode));
     ck_assert_int_eq(lstat(link, &info), 0);

@@ -158,7 +158,7 @@ START_TEST(files_that_cannot_be_read_are_named)
     temp_path("x"); /* the folder exists now */
     ck_assert_int_eq(hf_text_read_file(temp_path("."), HF_IO, &text, &length, &m), HF_IO);
     ck_assert_ptr_null(text);
-    ck_assert_ptr_nonnull(strstr(m.text, "is a folder; name a regular file"));
+    ck_assert_ptr_nonnull(strstr(m.text, "this is a folder. Give the name of a regular file"));
     hf_messages_free(&m);
 }
 END_TEST

@@ -59,9 +59,10 @@ START_TEST(two_cables_in_line)
     hf_messages messages = {0};
     ck_assert_int_eq(hf_built_make("x.yaml", &net.scene, &net.model, &net.form, &net.work, &built, &messages),
                      HF_BAD_CASE);
-    ck_assert_str_eq(messages.text,
-                     "error: x.yaml: 1 inner cables have no EA, which the as-built net needs, such as 'c1'. Add "
-                     "scene.EA_inner_N, or the column EA_N of an imported net\n");
+    ck_assert_str_eq(
+        messages.text,
+        "error: x.yaml: 1 inner cables have no stiffness EA, which the as-built net needs. One of these cables is "
+        "'c1'. Add the key scene.EA_inner_N, or add the column EA_N to the table of an imported net\n");
     hf_messages_free(&messages);
     hf_built_free(&built);
     close_design(&net);

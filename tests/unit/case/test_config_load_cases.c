@@ -137,11 +137,11 @@ static const struct {
     {CABLES "load_cases:\n  - {temperature_K: 1}\n", "",
      "error: c.yaml:8:5: load_cases.0.name: is missing and has no default\n"},
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1, set: fornt}\n", "",
-     "error: c.yaml:8:38: load_cases.0.set: there is no set of cables 'fornt'; did you mean 'front'?\n"},
+     "error: c.yaml:8:38: load_cases.0.set: this net has no cable set 'fornt'; did you mean 'front'?\n"},
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1, part: truss}\n", "",
      "error: c.yaml:8:39: load_cases.0.part: the case has no truss\n"},
     {TRUSS "load_cases:\n  - {name: a, temperature_K: 1, part: mbug}\n", "",
-     "error: c.yaml:9:39: load_cases.0.part: the truss has no members of unit mbug\n"},
+     "error: c.yaml:9:39: load_cases.0.part: the truss has no members of the unit 'mbug'\n"},
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1, part: net, set: tie}\n", "",
      "error: c.yaml:8:39: load_cases.0.part: does not go with set: a row names cables or members\n"},
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1}\n  - {name: a, temperature_K: 2}\n", "",
@@ -156,25 +156,27 @@ static const struct {
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1, force_N: [0, 1]}\n", "",
      "error: c.yaml:8:42: load_cases.0.force_N: must be a list of three numbers, along x, y and z, like [0, 0, -1]\n"},
     {NET "load_cases:\n  - {name: a, temperature_K: 1}\n", "",
-     "error: c.yaml:6:30: load_cases.0.temperature_K: the expansion of 163 cables is not known, such as 'f0_0-f1_0'. "
-     "Add expansion_per_K of their sets to `cables`; use 0 for cables that do not expand\n"},
+     "error: c.yaml:6:30: load_cases.0.temperature_K: 163 cables have no thermal expansion coefficient, such as cable "
+     "'f0_0-f1_0'. In the list `cables`, give expansion_per_K for these cables (0 for cables that do not expand)\n"},
     {NET "cables:\n  - {expansion_per_K: 1e-3}\nload_cases:\n  - {name: a, temperature_K: -2000}\n", "",
-     "error: c.yaml:8:30: load_cases.0.temperature_K: the lengths of 163 cables would change by more than the "
-     "fraction 0.1, such as 'f0_0-f1_0' by -2 at -2000 K. Check this temperature and expansion_per_K\n"},
+     "error: c.yaml:8:30: load_cases.0.temperature_K: 163 cables would change their lengths by more than the fraction "
+     "0.1. For example, the length of cable 'f0_0-f1_0' would change by the fraction -2 at -2000 K. Check this "
+     "temperature and the value expansion_per_K\n"},
     {NET "cables:\n  - {set: front, mass_kg_per_m: 1}\nload_cases:\n  - {name: a, gravity_m_per_s2: 1}\n", "",
-     "error: c.yaml:8:33: load_cases.0.gravity_m_per_s2: the mass of 121 cables is not known, such as 'f2_0-f3_17'. "
-     "Add mass_kg_per_m of their sets to `cables`; use 0 for cables without mass\n"},
+     "error: c.yaml:8:33: load_cases.0.gravity_m_per_s2: 121 cables have no mass per length, such as cable "
+     "'f2_0-f3_17'. In the list `cables`, give mass_kg_per_m for these cables (0 for cables without mass)\n"},
     {NET "truss: {ring: {height_m: 1}}\ncables: [{expansion_per_K: 0}]\nload_cases:\n  - {name: a, temperature_K: 1}\n",
      "",
-     "error: c.yaml:8:30: load_cases.0.temperature_K: the expansion of the truss is not known. Add "
-     "truss.expansion_per_K; use 0 for a truss that does not expand, or part: net for a temperature of the cables "
+     "error: c.yaml:8:30: load_cases.0.temperature_K: the truss has no thermal expansion coefficient. Add the key "
+     "truss.expansion_per_K (0 for a truss that does not expand), or part: net for a temperature of the cables "
      "alone\n"},
     {"scene: {paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, rear_distance_m: 1}}\nload_cases:\n  - {name: "
      "a, "
      "force_N: [0, 0, 1]}\n",
      "",
-     "error: c.yaml:3:12: load_cases.0.name: 163 cables have no EA, such as 'f0_0-f1_0', but load cases of the "
-     "as-built net need it. Add scene.EA_inner_N and scene.EA_boundary_N, or the column EA_N of an imported net\n"},
+     "error: c.yaml:3:12: load_cases.0.name: 163 cables have no stiffness EA, such as 'f0_0-f1_0', but load cases of "
+     "the as-built net need this stiffness. Add the keys scene.EA_inner_N and scene.EA_boundary_N, or add the column "
+     "EA_N to the table of an imported net\n"},
     {NET "load_cases:\n  - {name: a, force_N: [0, 0, 1], role: edge}\n  - {name: b, nodes: nodes.csv}\n",
      "id,Fx_N,dx_m\nf0_0,1,2\nzz,3,4\nf3_0,x,\nf3_0,1,\n",
      "error: nodes.csv:5: 'f3_0': this id was used before, on line 4\n"
@@ -182,8 +184,8 @@ static const struct {
      "error: nodes.csv:3: 'zz': the net has no node with this id\n"
      "error: nodes.csv:4: 'f3_0': Fx_N must be a finite number, not x\n"},
     {NET "load_cases:\n  - {name: b, nodes: nodes.csv}\n", "id,x_m\nf0_0,1\n",
-     "warning: nodes.csv:1: column 'x_m' is not used; did you mean 'dx_m'?\nerror: nodes.csv:1: has none of the "
-     "columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m, so it gives no loads\n"},
+     "warning: nodes.csv:1: column 'x_m' is not used; did you mean 'dx_m'?\nerror: nodes.csv:1: the table gives no "
+     "loads, because it has none of the columns Fx_N, Fy_N, Fz_N, dx_m, dy_m, dz_m\n"},
     {NET "load_cases:\n  - {name: b, nodes: other.csv}\n", "",
      "error: other.csv: cannot open: No such file or directory\n"},
 };

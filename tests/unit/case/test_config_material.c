@@ -76,7 +76,7 @@ START_TEST(faults_have_their_place)
         const char *text, *said;
     } fault[] = {
         {NET "cables:\n  - {set: ties, mass_kg_per_m: 1}\n",
-         "error: c.yaml:4:11: cables.0.set: there is no set of cables 'ties'; did you mean 'tie'?\n"},
+         "error: c.yaml:4:11: cables.0.set: this net has no cable set 'ties'; did you mean 'tie'?\n"},
         {NET "cables:\n  - {set: tie}\n", "error: c.yaml:4:11: cables.0.set: says nothing of these cables; give "
                                           "expansion_per_K, mass_kg_per_m or both\n"},
         {NET "cables: {set: tie}\n",

@@ -92,8 +92,10 @@ START_TEST(zip_goes_side_by_side)
     hf_study_free(&s);
     ck_assert_int_eq(read_study("  combine: zip\n  optimize.range_N: [1, 2]\n  form.pretension_N: [8, 9, 10]\n", &s),
                      HF_BAD_CASE);
-    ck_assert_msg(strstr(said, "study.yaml:5:3: sweep.form.pretension_N: has 3 values, but optimize.range_N has 2"),
-                  "%s", said);
+    ck_assert_msg(
+        strstr(said,
+               "study.yaml:5:3: sweep.form.pretension_N: this axis has 3 values, but the axis optimize.range_N has 2"),
+        "%s", said);
     hf_study_free(&s);
 }
 END_TEST
@@ -181,7 +183,7 @@ START_TEST(points_are_counted_before_any_is_made)
                                 "  optimize.range_N: {from: 1, to: 2, n: 1000000}\n",
                                 &s),
                      HF_BAD_CASE);
-    ck_assert_msg(strstr(said, "sweep: has 1e+12 points, but a study has at most 1000000"), "%s", said);
+    ck_assert_msg(strstr(said, "sweep: the study has 1e+12 points, but the maximum is 1000000 points"), "%s", said);
     hf_study_free(&s);
     ck_assert_int_lt(allocation_count() - before, 100);
 }
@@ -280,7 +282,7 @@ START_TEST(names_differ_and_are_digests_of_what_is_set)
             ck_assert_str_ne(s.id[i], s.id[k]);
     hf_study_free(&s);
     ck_assert_int_eq(read_study("  form.pretension_N: [8, 9, 8.0]\n", &s), HF_BAD_CASE);
-    ck_assert_msg(strstr(said, "two points are the same: form.pretension_N=8"), "%s", said);
+    ck_assert_msg(strstr(said, "two points of the study are identical: form.pretension_N=8"), "%s", said);
     hf_study_free(&s);
 }
 END_TEST
@@ -390,8 +392,9 @@ START_TEST(keys_of_rows_are_swept)
                                        "  optimize.objective.0.weight: {from: 1, to: 3, n: 3}\n",
                                        &s);
     ck_assert_int_eq(status, HF_BAD_CASE); /* one way to write each amount */
-    ck_assert_msg(strstr(said, "two points are the same: ") && strstr(said, "optimize.variables.0.range=30 %,"), "%s",
-                  said);
+    ck_assert_msg(strstr(said, "two points of the study are identical: ") &&
+                      strstr(said, "optimize.variables.0.range=30 %,"),
+                  "%s", said);
     hf_study_free(&s);
     status = read_rows_study("  optimize.variables.0.range: [1e-1, 30%]\n"
                              "  optimize.variables.1.bounds: [[1, 2], [null, 3]]\n"
@@ -471,7 +474,7 @@ static const struct {
     {"  files: some\n  form.pretension_N: [1]\n", "files must be one of auto, all, none"},
     {"  n: 3\n", "study.yaml:3:3: sweep: has no axis"},
     {"  form.pretension_N: {from: 1, to: 2, n: 2000}\n  optimize.seed: {from: 1, to: 2000, n: 2000}\n",
-     "4000000 points, but a study has at most 1000000"},
+     "4000000 points, but the maximum is 1000000"},
     /* ends too far apart for a difference or a quotient, and too large for a whole number */
     {"  form.pretension_N: {from: 1e308, to: -1e308, n: 3}\n",
      "study.yaml:3:29: sweep.form.pretension_N: from must be above 0 and at most 1000000000, not 1e308"},

@@ -45,12 +45,14 @@ static const struct {
     const char *set, *said;
     bool with_boundary, with_sets;
 } faulty[] = {
-    {"fron", "error: row: there is no set of cables 'fron'; did you mean 'front'?\n", true, true},
-    {"ties", "error: row: there is no set of cables 'ties'; did you mean 'tie'?\n", true, true},
-    {"bounday", "error: row: there is no set of cables 'bounday'; did you mean 'boundary'?\n", true, true},
-    {"rearward", "error: row: there is no set of cables 'rearward'; this net has all, inner, boundary, front, tie\n",
+    {"fron", "error: row: this net has no cable set 'fron'; did you mean 'front'?\n", true, true},
+    {"ties", "error: row: this net has no cable set 'ties'; did you mean 'tie'?\n", true, true},
+    {"bounday", "error: row: this net has no cable set 'bounday'; did you mean 'boundary'?\n", true, true},
+    {"rearward",
+     "error: row: this net has no cable set 'rearward'. The sets of this net are all, inner, boundary, front, tie\n",
      true, true},
-    {"rearward", "error: row: there is no set of cables 'rearward'; this net has all, inner, boundary\n", true, false},
+    {"rearward", "error: row: this net has no cable set 'rearward'. The sets of this net are all, inner, boundary\n",
+     true, false},
     {"boundary", "error: row: this net has no boundary cables\n", false, true},
 };
 enum { N_FAULTY = sizeof faulty / sizeof *faulty };

@@ -34,7 +34,7 @@ START_TEST(nothing_to_find_is_refused)
     c.cells_per_module[0] = c.cells_per_module[1] = 1; /* every node is a module corner */
     hf_scene s = generate(&c);
     ck_assert_int_eq(check(&s, text, sizeof text), HF_BAD_CASE);
-    ck_assert_str_eq(text, "error: scene: every node is a support, so there is no shape to find\n");
+    ck_assert_str_eq(text, "error: scene: the net has no free nodes, because every node is a support\n");
     c.cells_per_module[0] = 2; /* free nodes on the edges only */
     c.boundary = HF_BOUNDARY_MODULE_EDGES;
     s = generate(&c);

@@ -259,13 +259,13 @@ START_TEST(binary_and_missing_files_are_refused)
     fwrite("\x89HDF\r\n\x1a\n\0\0\0\0", 1, 12, file);
     fclose(file);
     ck_assert_int_eq(import(NULL, GOOD_CABLES, &s, said, sizeof said), HF_BAD_CASE);
-    ck_assert_str_eq(said, "error: nodes.csv: not a text file\n");
+    ck_assert_str_eq(said, "error: nodes.csv: this file is not a text file\n");
     file = fopen(temp_path("nodes.csv"), "wb"); /* without a byte order mark */
     ck_assert_ptr_nonnull(file);
     fwrite("i\0d\0,\0", 1, 6, file);
     fclose(file);
     ck_assert_int_eq(import(NULL, GOOD_CABLES, &s, said, sizeof said), HF_BAD_CASE);
-    ck_assert_str_eq(said, "error: nodes.csv: UTF-16 text; save the file as CSV UTF-8\n");
+    ck_assert_str_eq(said, "error: nodes.csv: this file contains UTF-16 text. Save the file as CSV UTF-8\n");
 }
 END_TEST
 
@@ -310,7 +310,7 @@ START_TEST(many_faults_are_cut_short)
     for (const char *p = said; (p = strchr(p, '\n')) != NULL; p++)
         n_line++;
     ck_assert_int_eq(n_line, 21);
-    ck_assert_ptr_nonnull(strstr(said, "error: nodes.csv: there are 30 more faults\n"));
+    ck_assert_ptr_nonnull(strstr(said, "error: nodes.csv: hifdm found 30 more faults in this file\n"));
 }
 END_TEST
 

@@ -338,7 +338,7 @@ START_TEST(rear_nets_that_cannot_be_are_refused)
     ck_assert_ptr_null(hf_scene_parabolic_cylinder_fault(&c, what, sizeof what));
     c.tie_law = HF_LAW_ELASTIC;
     ck_assert_int_eq(hf_scene_parabolic_cylinder(&c, NULL, &s, &messages), HF_BAD_CASE);
-    ck_assert_ptr_nonnull(strstr(messages.text, "parabolic_cylinder.tie_law: elastic needs the stiffness"));
+    ck_assert_ptr_nonnull(strstr(messages.text, "parabolic_cylinder.tie_law: the law elastic needs the stiffness"));
     hf_messages_free(&messages);
     c.tie_direction = HF_TIES_ALONG_NORMAL; /* on so deep a net the normal runs beside the falling rear net */
     c.focal_length_m = 1;

@@ -17,22 +17,23 @@ static const struct {
     const char *rows, *more, *said;
 } refused[] = {
     {"[{set: frnt, vary: tension, range: 1}]", NULL,
-     "--set optimize.variables.0.set: there is no set of cables 'frnt'; did you mean 'front'?"},
-    {"[{set: all, vary: tension, range: 1}, {set: tie, vary: length, range: 1}]", NULL, "is already varied by row 0"},
+     "--set optimize.variables.0.set: this net has no cable set 'frnt'; did you mean 'front'?"},
+    {"[{set: all, vary: tension, range: 1}, {set: tie, vary: length, range: 1}]", NULL,
+     "is already a design variable of row 0"},
     {"[{set: front_edge, vary: support_z, range: 1}, {set: front_edge, vary: support_xyz, range: 1}]", NULL,
-     "is already varied by row 0"},
+     "is already a design variable of row 0"},
     {"[{set: front, vary: unstressed_length, range: 1 %}]", NULL,
-     "only cables of law elastic have an unstressed length"},
+     "only cables with the law elastic have an unstressed length"},
     {"[{set: tie, vary: support_z, range: 1}]", NULL,
-     "set tie has 7 cables, but no support at their ends that holds a free node, so there is nothing to vary"},
+     "set tie has 7 cables, but no support at their ends that holds a free node. Choose another set"},
     {"[{set: front, vary: tension, bounds: [-5, -2]}]", NULL,
-     "no value above 0 N, but a cable needs a tension and a length"},
+     "no value above 0 N, but tensions and lengths of cables must be above zero"},
     {"[{set: tie, vary: length, bounds: [null, 0]}]", NULL,
-     "no value above 0 m, but a cable needs a tension and a length"},
+     "no value above 0 m, but tensions and lengths of cables must be above zero"},
     {"[{set: tie, vary: tension, range: 1}]", "optimize.objective=[{figure: tension, set: ties, target: 3}]",
-     "--set optimize.objective.0.set: there is no set of cables 'ties'; did you mean 'tie'?"},
+     "--set optimize.objective.0.set: this net has no cable set 'ties'; did you mean 'tie'?"},
     {"[{set: tie, vary: tension, range: 1}]", "optimize.limits=[{figure: ratio, set: ties, bounds: [1, 3]}]",
-     "--set optimize.limits.0.set: there is no set of cables 'ties'; did you mean 'tie'?"},
+     "--set optimize.limits.0.set: this net has no cable set 'ties'; did you mean 'tie'?"},
 };
 enum { N_REFUSED = sizeof refused / sizeof *refused };
 

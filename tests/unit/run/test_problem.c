@@ -121,7 +121,7 @@ static const struct refusal {
      "did not converge in 3 iterations"},
     {SMALL_NET(", scallop: 0.1") "optimize: {method: lm, rule: seeded}\n", HF_BAD_CASE, "Levenberg-Marquardt needs"},
     {SMALL_NET(", scallop: 0.1") "optimize: {min_tension_N: 1e4, max_tension_N: 2e4}\n", HF_BAD_CASE,
-     "does not overlap min_tension_N"},
+     "does not overlap the interval from min_tension_N"},
     {SMALL_NET(", scallop: 0.1") "truss: {bud: {diameter_m: 1e-4, wall_m: 4e-5}, mbug: {diameter_m: 1e-4, wall_m: "
                                  "4e-5}, abug: {diameter_m: 1e-4, wall_m: 4e-5}}\ncoupling: {scheme: accelerated}\n",
      HF_TRUSS_TOO_SOFT, "the truss is too soft"},

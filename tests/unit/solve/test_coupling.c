@@ -32,7 +32,7 @@ START_TEST(bad_attachments_are_refused)
         int node;
         double f01, f00;
         const char *message;
-    } fault[] = {{inner, was, 1e-5, "attachment 1 of the truss: node"},
+    } fault[] = {{inner, was, 1e-5, "attachment 1 of the truss belongs to node"},
                  {-1, was, 1e-5, "is not a support"},
                  {node[0], was, 1e-5, "attachments 0 and 1"},
                  {kept, NAN, 1e-5, "not finite"},

@@ -229,8 +229,8 @@ static const struct {
     hf_objective_settings objective;
     const char *said;
 } faulty[] = {
-    {WANT(TENSION, "bounday", 4, 1), ".set: there is no set of cables 'bounday'; did you mean 'boundary'?"},
-    {WANT_MASS("rear", 1), ".set: there is no set of cables 'rear'; this net has all, inner, boundary"},
+    {WANT(TENSION, "bounday", 4, 1), ".set: this net has no cable set 'bounday'; did you mean 'boundary'?"},
+    {WANT_MASS("rear", 1), ".set: this net has no cable set 'rear'. The sets of this net are all, inner, boundary"},
     {WANT(TENSION, "inner", NAN, 1), ": tension: needs a target, in N"},
     {WANT(EVENNESS, "inner", NAN, 1), ": evenness: the evenness of one cable is always 0; use a set of several cables"},
     {WANT(RATIO, "inner", NAN, 1), ": ratio: the ratio of one cable is always 1; use a set of several cables"},

@@ -164,7 +164,7 @@ START_TEST(it_is_told_to_stop)
     struct net net = {.form = tight_form(HF_METHOD_AUTO)};
     hand_scene(&net.scene, 3, node, 2, cable);
     ck_assert_int_eq(hf_prestress_hold(&net.scene, &net.form, &stop, &messages), HF_INTERRUPTED);
-    ck_assert_msg(strstr(messages.text, "interrupted before its tensions were found") != NULL, "%s", messages.text);
+    ck_assert_msg(strstr(messages.text, "interrupted before hifdm found the tensions") != NULL, "%s", messages.text);
     ck_assert(net.scene.law[0] == HF_LAW_TENSION && net.scene.target[1] == 12);
     hf_messages_free(&messages);
     hf_scene_free(&net.scene);

@@ -64,7 +64,7 @@ START_TEST(a_spoilt_record_is_told)
         ck_assert_int_eq(hf_journal_replay(&j, "this run", count, &n, &m), HF_OK);
         ck_assert_int_eq(n, 1);
         ck_assert_int_eq(m.n_warning, 1);
-        ck_assert_ptr_nonnull(strstr(m.text, "is damaged: its last 2032 bytes are ignored"));
+        ck_assert_ptr_nonnull(strstr(m.text, "is damaged, so hifdm ignores its last 2032 bytes"));
         hf_journal_close(&j, true);
         hf_messages_free(&m);
     }
@@ -135,7 +135,7 @@ START_TEST(what_is_no_journal_is_replaced_or_told)
     ck_assert_int_eq(hf_journal_open(result_path(), false, &j, &m), HF_EXISTS);
     hf_journal_close(&j, false);
     ck_assert_int_eq(hf_journal_open(result_path(), true, &j, &m), HF_OK);
-    ck_assert_ptr_nonnull(strstr(m.text, "run.h5.journal was not a journal of hifdm and is replaced\n"));
+    ck_assert_ptr_nonnull(strstr(m.text, "run.h5.journal was not a journal of hifdm, so hifdm replaced this file\n"));
     hf_journal_close(&j, true);
     hf_messages_free(&m);
     ck_assert_int_eq(mkdir(temp_path("run.h5.journal"), 0700), 0);

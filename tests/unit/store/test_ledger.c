@@ -517,8 +517,9 @@ END_TEST
 START_TEST(what_is_no_table_is_in_the_way)
 {
     static const char *const command[] = {"mkfifo '%s'", "mkdir '%s'", "truncate -s 40G '%s'"};
-    static const char *const words[] = {": is not a regular file; remove it\n", ": is not a regular file; remove it\n",
-                                        ": is not a table of hifdm, because it is longer than 4096 MB; remove it\n"};
+    static const char *const words[] = {
+        ": this is not a regular file. Remove it\n", ": this is not a regular file. Remove it\n",
+        ": this file is larger than 4096 MB, so it is not a table of hifdm. Remove it\n"};
     hf_study s;
     hf_ledger mine;
     hf_points points;

@@ -204,8 +204,9 @@ static const struct {
     {"f['search'].attrs.modify('solver', 77)", 1, "/search names a solver that there is not"},
     {OLD "del f['form'].attrs['culprit'], f['search'].attrs['algorithm_stop'], f['form'].attrs['psi_m']", 0, ""},
     {OLD "del f['form/tension_N']", 1,
-     "(old) and has no /form/tension_N, which this version needs. Run its case again, or read it with that version"},
-    {"del f['form'].attrs['culprit']", 1, "is damaged: attribute culprit of /form is not there"},
+     "(old) does not contain /form/tension_N, which this version needs. Run the case again, or read the file with the "
+     "version that wrote the file"},
+    {"del f['form'].attrs['culprit']", 1, "this file is damaged: attribute culprit of /form is not there"},
     {"f['scene/set/cable'][0] = 10**6", 1, "/scene/set does not describe sets of cables"},
     {"f['scene/set/cable'][1] = f['scene/set/cable'][0]", 1, "/scene/set does not describe sets of cables"},
     {"f['scene/set/start'][1] = 10**9", 1, "/scene/set does not describe sets of cables"},

@@ -84,8 +84,8 @@ START_TEST(results_of_other_designs_are_left_out)
     r.settings.seed = 99;
     resume(path, &r, &s, &messages);
     ck_assert_int_eq(messages.n_warning, 1);
-    ck_assert_msg(strstr(messages.text, "Generations 3 to 4, which were not published, are evaluated again") != NULL,
-                  "%s", messages.text);
+    ck_assert_msg(strstr(messages.text, "hifdm evaluates the unpublished generations 3 to 4 again") != NULL, "%s",
+                  messages.text);
     ck_assert_int_eq(hf_store_generations(s), 2);
     ck_assert_int_eq(r.ga.population.generation, 1);
     hf_messages_free(&messages);
@@ -177,7 +177,8 @@ static const struct {
      "/search/population/psi_m is a link to another place"},
     {"f['search/more'] = h5py.ExternalLink('/etc/passwd', '/')", "/search/more is a link to another place"},
     {"f['all'] = f['/']", "one object too many, or too deep"},
-    {RECORD("data[88 + 8] = 77"), "no run stores its generation 2"}, /* `evaluated` of the first individual */
+    {RECORD("data[88 + 8] = 77"),
+     "no run stores a record like its generation 2"}, /* `evaluated` of the first individual */
     {RECORD("data[84:84 + n] = struct.pack('<i', 2) + bytes(20); n = 24; struct.pack_into('<I', data, 76, n)"),
      "does not match"},
     {RECORD("struct.pack_into('<i', data, 84, 2**31 - 1)"), "does not match"},

@@ -202,7 +202,7 @@ START_TEST(floating_frame)
         t.fixed[i] = 0;
     expect_refusal(&t, "truss: node 'a", "no node of the truss is supported");
     t.fixed[2] = 0x07; /* held at a ball: it can still turn */
-    expect_refusal(&t, "truss: node 'a", "without force: the truss is a mechanism, or not held by enough supports");
+    expect_refusal(&t, "truss: node 'a", "without force, because the truss is a mechanism or has too few supports");
     t.fixed[2] = 0x17; /* and about y */
     expect_refusal(&t, "truss: node 'a", "without force");
     t.fixed[2] = 0x3f;

@@ -309,7 +309,7 @@ START_TEST(support_without_attachment)
     ck_assert_int_eq(hf_config_scene(&c, &scene, &messages), HF_OK);
     ck_assert_int_eq(hf_config_carrier(&c, &scene, &carrier, &messages), HF_BAD_CASE);
     ck_assert_ptr_nonnull(
-        strstr(messages.text, "truss: net support 'n1_0' has no attachment: the nearest truss node, 'f"));
+        strstr(messages.text, "truss: net support 'n1_0' has no attachment, because the nearest truss node 'f"));
     ck_assert_ptr_nonnull(strstr(messages.text, "truss: 10 more net supports have no attachment")); /* 6 ribs of 5 */
     hf_carrier_free(&carrier);
     hf_messages_free(&messages);
@@ -384,7 +384,7 @@ START_TEST(the_nearest_node_is_taken)
         ck_assert_int_eq(hf_truss_attach(&t, &scene, 1e-3, &n, &scene_node, &truss_node, &messages), HF_OK);
         ck_assert(n == 1 && scene_node == 0 && truss_node == i);
         ck_assert_int_eq(hf_truss_attach(&t, &scene, 0.9e-4, &n, &scene_node, &truss_node, &messages), HF_BAD_CASE);
-        snprintf(said, sizeof said, "the nearest truss node, '%s'", t.node_id[i]);
+        snprintf(said, sizeof said, "the nearest truss node '%s'", t.node_id[i]);
         ck_assert_ptr_nonnull(strstr(messages.text, said));
         hf_messages_free(&messages);
     }
