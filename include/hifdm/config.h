@@ -8,9 +8,9 @@
  *   hf_config_surface, _material, _load_cases   hf_case and scene -> target surface, material, load cases
  *   hf_config_truss, hf_config_carrier                        hf_case and scene -> truss, condensed to the supports
  *
- * One table (src/case/config_table.c) holds every key with its type, range, default, unit and help. The headers
- * generate.h and truss.h define the keys of the generators. The loader validates case files with this table, and `hifdm
- * schema` prints the table. The table defines all defaults. */
+ * One table (src/case/config_table.c) holds every key with its type, range, default and unit. The headers
+ * generate.h and truss.h define the keys of the generators. The file src/case/keys.md describes each key. The loader
+ * validates case files with this table, and `hifdm schema` prints the table. The table defines all defaults. */
 #pragma once
 
 #include <hifdm/api.h>
