@@ -56,7 +56,8 @@ void hf_built_batch_free(hf_built_batch *batch);
 /* Returns the number of threads. */
 int hf_built_batch_threads(const hf_built_batch *batch);
 
-/* Updates a batch of one thread after a call of hf_built_renew. Returns HF_OK or HF_NO_MEMORY. */
+/* Updates the batch that belongs to one thread. Call this function after hf_built_renew. Returns HF_OK or
+ * HF_NO_MEMORY. */
 hf_status hf_built_batch_renew(hf_built_batch *batch);
 
 /* Solves one net in the calling thread. The loads of this net may differ from the loads of the design. Returns the

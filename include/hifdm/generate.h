@@ -36,8 +36,8 @@ HF_API_BEGIN
 /* The ties between the two nets of a double net run along z or along the normal of the front net. */
 typedef enum { HF_TIES_ALONG_Z, HF_TIES_ALONG_NORMAL } hf_tie_direction;
 
-/* All settings of generators with a rear net contain these members. The rim of the rear net is rear_distance_m below
- * the rim of the front net. The rear net bulges towards the front net. */
+/* Defines the members that the settings of each generator with a rear net contain. The rim of the rear net is
+ * rear_distance_m below the rim of the front net. The rear net bulges towards the front net. */
 #define HF_DOUBLE_NET_MEMBERS                                                                                          \
     double rear_distance_m;         /* distance between the rims; 0: no rear net */                                    \
     double rear_focal_length_m;     /* focal length of the rear net; 0: the focal length of the front net */           \

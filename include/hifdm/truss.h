@@ -141,7 +141,8 @@ typedef struct {
 } hf_truss_settings;
 
 /* Defines the keys of the `truss` section and of each of its units. The macro arguments are the default diameter of the
- * tubes and the default number of panels. Each row X(section, member, type, minimum, maximum, default, unit, words) defines a key in hf_field_table (config.h). */
+ * tubes and the default number of panels. Each row X(section, member, type, minimum, maximum, default, unit, words)
+ * defines a key in hf_field_table (config.h). */
 #define HF_TRUSS_KEYS(X, section)                                                                                      \
     X(section, depth_m, HF_FIELD_DOUBLE, HF_ABOVE_ZERO, 1e3, "1", "m", NULL)                                           \
     X(section, main_every, HF_FIELD_INT, 1, 2000, "2", "", NULL)                                                       \

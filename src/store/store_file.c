@@ -29,8 +29,9 @@ hf_status hf_store_file_check(const char *path, hf_messages *messages)
     if (lstat(path, &info) == 0 && stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         return hf_error(messages, HF_EXISTS, "%s: this is %s. Use -o to choose a file name", path,
                         S_ISDIR(info.st_mode) ? "a folder" : "not a regular file");
+    if (!*path) return hf_error(messages, HF_IO, "the name of the result file is empty. Use -o to choose a file name");
     hf_path_folder(path, folder, sizeof folder);
-    if (!*path || stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
+    if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
         return hf_error(messages, HF_IO,
                         "%s: the folder %s does not exist. Create this folder, or use -o to choose another name", path,
                         folder);

@@ -389,7 +389,7 @@ START_TEST(bad_tables_are_named)
     bad = measured_with("m.csv", HEADER, one_off, "");
     HIFDM(2, "adjust", path, "--measured", bad);
     ERRS("%s:19: node '", bad);
-    ERR("is 300 mm from its position in the design");
+    ERR("is 300 mm from its design position");
     bad = measured_with("m.csv", HEADER, two_nodes, "");
     HIFDM(2, "adjust", path, "--measured", bad);
     ERR("the file has positions of 2 free nodes, but hifdm needs at least 3 positions");
@@ -499,7 +499,7 @@ START_TEST(bad_cases_are_named)
     const char *measured = measured_with("m.csv", HEADER, NULL, "");
     HIFDM(2, "adjust", file_with("case.yaml", EA_SCENE), "--measured", measured);
     ERR("the case has no `adjust` section");
-    ERR("has no section tolerance");
+    ERR("has no `tolerance` section");
     HIFDM(2, "adjust", file_with("case.yaml", SMALL_SCENE SECTIONS), "--measured", measured);
     ERR("have no stiffness EA");
     const char *path = file_with("case.yaml", EA_SCENE SECTIONS);

@@ -150,7 +150,7 @@ START_TEST(rows_that_the_net_cannot_serve_have_their_places)
     path = file_with("c.yaml", SMALL_SCENE "optimize:\n"
                                            "  variables: [{set: edge, vary: length, range: 1 %, bounds: [9, 10]}]\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
-    ERRS("error: %s:4:15: optimize.variables.0: 'n0_0-n1_0' has ", path);
+    ERRS("error: %s:4:15: optimize.variables.0: the design variable 'n0_0-n1_0' has the value ", path);
     ERR(" m after form-finding. The range around this value does not overlap the bounds of the design variable\n");
 }
 END_TEST

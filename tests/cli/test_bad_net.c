@@ -245,7 +245,7 @@ START_TEST(numbers_that_run_away_are_told)
     ERR("error: ill-posed: the tension of cable 'ac' is no longer a finite number\n");
     net_with(NODES "e,1e200,0,0,inner\n", CABLES "ce,c,e,inner,tension,10\nbe,b,e,inner,tension,10\n");
     HIFDM(4, "check", net);
-    ERR("node 'e' is 1e+200 m from the middle of the net, 5.88e+199 times as far as the others");
+    ERR("node 'e' is 1e+200 m from the middle of the net, which is 5.88e+199 times as far as the other nodes");
 }
 END_TEST
 

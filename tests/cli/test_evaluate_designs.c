@@ -169,7 +169,7 @@ START_TEST(a_net_without_a_base_is_refused)
     const char *designs = file_with("d.csv", "c1,\"c,2\",c3\n10,10,9\n"), *net = net_with(nodes, cables);
     HIFDM(3, "evaluate", net, "--designs", designs, "-o", temp("o.csv"), "--set", "form.method=hifdm", "--set",
           "form.max_iterations=1");
-    ERR("error: form-finding did not converge in 1 iteration:");
+    ERR("error: form-finding did not converge in 1 iteration.");
     HIFDM(4, "evaluate", CHEN, "--template", temp("o.csv"), "--set", "form.stop=residual");
     ERR("error: ill-posed: 30 straight chains");
     HIFDM(2, "evaluate", REFLECTOR, "--template", temp("o.csv"), "--set",

@@ -9,14 +9,14 @@
 static const struct {
     const char *modules, *cells, *error;
 } huge[] = {
-    {"[2000,2000]", "[2000,2000]", "error: scene: 4000001 x 4000001 nodes exceed the maximum of 4000000\n"},
-    {"[2000,1]", "[2000,1]", "error: scene: 4000001 x 2 nodes exceed the maximum of 4000000\n"},
+    {"[2000,2000]", "[2000,2000]", "error: scene: 4000001 x 4000001 nodes exceed the maximum of 4000000 nodes\n"},
+    {"[2000,1]", "[2000,1]", "error: scene: 4000001 x 2 nodes exceed the maximum of 4000000 nodes\n"},
     {"[2001,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not 2001\n"},
     {"[99999999999999999999,1]", "[1,1]", "must be at least 1 and at most 2000, not 99999999999999999999\n"},
     {"[0,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not 0\n"},
     {"[-5,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not -5\n"},
     /* few enough nodes, but their band matrix would need 4 GB per thread */
-    {"[1,1]", "[800,800]", "error: the band matrix with 641597 rows and half-bandwidth 801 is too large\n"},
+    {"[1,1]", "[800,800]", "error: the band matrix with 641597 rows and half-bandwidth 801 is too large. Use fewer cells\n"},
 };
 
 /* 10 s of processor time is 100 times what it takes, and far less than any of these nets would. */

@@ -207,7 +207,7 @@ START_TEST(a_link_has_the_lock_of_its_file)
     session s = start_program(argv);
     wait_for_generations(&s, path);
     HIFDM(5, "run", c, "-o", link);
-    ERR("another process is writing it");
+    ERR("another process is writing this result");
     HIFDM(5, "recover", link);
     ck_assert_int_eq(end_by(&s, SIGKILL), 128 + SIGKILL);
     HIFDM(0, "recover", link);

@@ -88,7 +88,7 @@ START_TEST(balance_that_is_not_by_law)
     HIFDM(0, "run", net, "-o", temp("a.h5"), "--set", "form.method=hifdm");
     ERR("with the laws of the elastic cables, residual forces of up to 4.11e-02 N remain");
     ERR("Lower form.length_tolerance, or use form.method: newton");
-    ERR("and 5 more are stretched by up to 16.7 % (22.79 N, EA 136.5 N)");
+    ERR("and 5 more are stretched by up to 16.7 % (tension 22.79 N, EA 136.5 N)");
     HIFDM(0, "run", net, "-o", temp("b.h5"));
     ck_assert_ptr_null(strstr(said.err, "by the laws"));
 }

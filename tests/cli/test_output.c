@@ -56,7 +56,7 @@ START_TEST(output_is_looked_at_before_the_work)
                                 "optimize.stagnation_generations=1000000",
                                 NULL};
     demand_exit(run_command(HANG_S, argv), 5, "existing output", __LINE__);
-    ERR("use --restart (in a sweep: --retry failed) to replace it");
+    ERR("Use --restart (in a sweep: --retry failed) to replace the file");
     ck_assert(file_is(path, "mine"));
 }
 END_TEST

@@ -54,8 +54,8 @@ static const struct {
                                               "leave it out, or make it rear_distance_m, 1.8 m\n"},
     {DISH_ALONE "truss: {ring: {}}\n",
      ": truss.ring.height_m: is missing: the net has no rear rim that gives this height\n"},
-    {DISH "truss: {ring: {cells_per_bay: 5}}\n", ":2:31: truss.ring.cells_per_bay: bays of 5 cells must divide the rim "
-                                                 "of 24 cells into at least three equal parts\n"},
+    {DISH "truss: {ring: {cells_per_bay: 5}}\n", ":2:31: truss.ring.cells_per_bay: 5 must divide the 24 cells at the "
+                                                 "rim into at least three bays\n"},
     {DISH "truss: {ring: {cells_per_bay: 12}}\n", ":2:31: truss.ring.cells_per_bay: 12 must divide the 24"},
     {DISH "truss: {ring: {longeron: {wall_m: 0.02}}}\n",
      ":2:35: truss.ring.longeron.wall_m: must not be more than half the diameter_m beside it\n"},

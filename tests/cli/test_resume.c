@@ -292,7 +292,7 @@ END_TEST
 
 /* Seconds of Levenberg-Marquardt: variables enough. */
 #define LONG_REFINE                                                                                                    \
-    "scene:\n  paraboloid: {aperture_m: 9, focal_length_m: 6, offset_m: 5.5, rings: 4, rear_distance_m: 2.4}\n"        \
+    "scene:\n  paraboloid: {aperture_m: 9, focal_length_m: 6, offset_m: 5.5, rings: 5, rear_distance_m: 2.4}\n"        \
     "surface: {frequencies_Hz: [6e9]}\n"                                                                               \
     "form: {pretension_N: 10, prestress: exact}\n"                                                                     \
     "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay}\n"                                                 \
@@ -301,7 +301,7 @@ END_TEST
     "  objective: [{figure: facets, along: half_path, fit: best}, {figure: evenness, set: front, weight: 1e-3}]\n"     \
     "  limits: [{figure: tension, set: all, bounds: [1, 60]}]\n"
 
-/* Steps are told of once a second; one after the first is under way. */
+/* hifdm reports steps once a second. Another step runs after the first report. LONG_REFINE takes about five seconds. */
 static bool says_step(const char *err)
 {
     char *text = read_file(err, NULL);
@@ -385,7 +385,7 @@ START_TEST(a_second_process_is_refused)
     session s = start_program(argv);
     wait_for_generations(&s, path);
     HIFDM(5, "run", c, "-o", path);
-    ERR("another process is writing it");
+    ERR("another process is writing this result");
     HIFDM(5, "run", c, "-o", path, "--restart");
     HIFDM(5, "recover", path);
     generations_in_file(path); /* reading is free */

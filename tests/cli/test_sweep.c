@@ -57,7 +57,7 @@ START_TEST(sweep_status_and_merge)
     OUT("External Link");
     SHELL(0, "cp \"$1\" \"$1.old\"", merged); /* a misspelt folder does not empty the table */
     HIFDM(5, "merge", path, "--dir", temp("sd"), "-o", merged, "--force");
-    ERRS("error: %s: there is no such folder of results;", temp("sd"));
+    ERRS("error: %s: there is no such folder of results. ", temp("sd"));
     SHELL(0, "cmp \"$1\" \"$1.old\"", merged);
     HIFDM(0, "sweep", path, "--dir", folder);
     OUT("0 points run");

@@ -143,7 +143,7 @@ START_TEST(a_begun_point_with_a_cut_file)
 {
     const char *folder = temp("s.d"), *path = begun_study(folder);
     SHELL(0, "truncate -s 1000 \"$1\"/*.h5", folder);
-    retry_helps(path, folder, "is cut off: a truncated HDF5 file; use --restart");
+    retry_helps(path, folder, "is cut off: a truncated HDF5 file. Use --restart");
 }
 END_TEST
 

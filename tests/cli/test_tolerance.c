@@ -313,7 +313,7 @@ START_TEST(faults_are_named)
     ERR("f.yaml:3:26: tolerance.sigma_cut_m: ");
     ERR("cables have no stiffness EA");
     HIFDM(2, "tolerance", file_with("f.yaml", BUILT_SCENE), NOWHERE);
-    ERR("has no section tolerance");
+    ERR("has no `tolerance` section");
     HIFDM(2, "tolerance", built_case("random"), NOWHERE, "--task", "3", "--tasks", "3");
     ERR("--task 3 is out of range, because the 3 tasks are numbered from 0 to 2");
 }

@@ -81,7 +81,7 @@ START_TEST(titles_and_files_are_shown)
     SHOWN(0, "export", out, "--csv", temp(EVIL), "--vtk", temp(EVIL), "--cutlist", csv);
     OUT(EVIL_SHOWN);
     SHOWN(5, "export", out, "--csv", temp(EVIL));
-    ERR(EVIL_SHOWN "/nodes.csv exists");
+    ERR(EVIL_SHOWN "/nodes.csv already exists");
     SHOWN(0, "evaluate", path, "--template", csv, "--force");
     SHOWN(0, "evaluate", path, "--designs", csv, "-o", temp(EVIL "2.csv"));
     SHOWN(0, "report", out, "-o", temp(EVIL ".html"));
@@ -129,7 +129,7 @@ START_TEST(faults_are_shown)
     EXPECT(temp("net/nodes.csv"), "--", "a[0]['id'] == 'a\\x7f\\x9b\\u202e'");
     SHOWN(0, "show", temp("net.h5"));
     SHOWN(2, "export", temp("net.h5"), "--cutlist", temp("cut.csv"));
-    ERR("such as 'ab" EVIL_CELL_SHOWN "'");
+    ERR("One of these cables is 'ab" EVIL_CELL_SHOWN "'");
     net_with("id,x_m,y_m,z_m,role\na" EVIL_CELL ",nan,0,0,support\na" EVIL_CELL ",0,0,0," EVIL_CELL "\n",
              "id,i,j,group,law,value\nab," EVIL_CELL ",b,inner,tension,10\n");
     SHOWN(2, "run", net, NOWHERE);

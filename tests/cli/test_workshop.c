@@ -76,7 +76,7 @@ START_TEST(paraview_files_of_facets)
     demand_vtk(out, folder, "form form_facets target target_facets");
     SHELL(0, "cd \"$1\" && rm form.hdf target.hdf target_facets.hdf", folder);
     HIFDM(5, "export", out, "--vtk", folder);
-    ERR("the file form_facets.hdf already exists. Use --force to replace it");
+    ERR("form_facets.hdf already exists. Use --force to replace it");
 }
 END_TEST
 
@@ -263,7 +263,7 @@ START_TEST(cut_list_needs_EA)
           "scene.EA_boundary_N=6e4");
     write_file(temp("cut_totals.csv"), "mine");
     HIFDM(5, "export", out, "--cutlist", cut); /* none of the three unless all three */
-    ERR("the file cut_totals.csv already exists. Use --force to replace it");
+    ERR("cut_totals.csv already exists. Use --force to replace it");
     ck_assert(!is_there(cut));
     HIFDM(0, "export", out, "--cutlist", cut, "--force");
     EXPECT(cut, "--", "{(r['group'], r['EA_N']) for r in a} == {('inner', '50000'), ('boundary', '60000')}");

@@ -153,7 +153,7 @@ START_TEST(lengths_in_another_unit_are_told)
     ERRS("warning: %s:2: cable 'ab' is 1005 m long by its law, which is 1e+03 times the distance between its nodes. Is "
          "this length in m?\n",
          temp("cables.csv"));
-    ERRS("warning: %s:3: cable 'bc' is 0.498 m long by its law, 0.496 times ", temp("cables.csv"));
+    ERRS("warning: %s:3: cable 'bc' is 0.498 m long by its law, which is 0.496 times ", temp("cables.csv"));
     ck_assert_int_eq(count_of(said.err, "by its law"), 2);
     for (int i = 0; i < 6; i++)
         snprintf(cables + strlen(cables), sizeof cables - strlen(cables), "t%d,b,d,inner,length,1600,\n", i);
@@ -184,7 +184,7 @@ START_TEST(a_range_beyond_the_values_is_told)
                                           "range: %s}]}\n";
     const char *path = file_with("r.yaml", formatted(row, "500"));
     HIFDM(0, "check", path);
-    ERR("optimize.variables.0.range: 500 is ");
+    ERR("optimize.variables.0.range: the range 500 is ");
     ERR(" times the maximum value of this row, ");
     ERR(". For a relative range, write 500 %\n");
     ck_assert_int_eq(count_of(said.err, "For a relative range"), 1);

@@ -348,7 +348,7 @@ function whatMatters(figure, shares) {
   const part = (share) => (share < LITTLE ? "less than 0.1\u00a0%" : percent(share, 2));
   const parts = shares.map(({ axis, share }) => `${axis.name} ${part(share)}`),
     rest = 1 - shares.reduce((sum, { share }) => sum + share, 0);
-  const both = rest > 0.005 ? ` Interactions of the axes contribute ${part(rest)}.` : "";
+  const both = rest > 0.005 ? ` Interactions between the axes contribute ${part(rest)}.` : "";
   const title = figure.title.replace(/^S/, "s");
   return `The axes contribute the following shares to the variance of ${title}: ${parts.join(", ")}.${both}`;
 }

@@ -77,7 +77,7 @@ START_TEST(many_faults_are_cut_short)
     for (const char *p = text; (p = strchr(p, '\n')) != NULL; p++)
         n_line++;
     ck_assert_int_eq(n_line, 21);
-    ck_assert_ptr_nonnull(strstr(text, " more faults\n"));
+    ck_assert_ptr_nonnull(strstr(text, " more faults in this net\n"));
 }
 END_TEST
 

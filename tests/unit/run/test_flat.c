@@ -180,7 +180,7 @@ START_TEST(a_program_reads_an_earlier_result)
     ck_assert_int_eq(run_again(flat, path, "kill -SEGV $$"), HF_OK); /* there is none */
     ck_assert_int_eq(run_again(flat, path, "kill -SEGV $$"), HF_EXISTS);
     ck_assert_ptr_nonnull(
-        strstr(hf_flat_messages(flat), "this file is damaged. The process that read the file was ended by signal 11"));
+        strstr(hf_flat_messages(flat), "is damaged. The process that read the file was ended by signal 11"));
     ck_assert_int_eq(run_again(flat, path, "kill -KILL $$"), HF_IO);
     ck_assert_ptr_nonnull(strstr(hf_flat_messages(flat), "the process that read this file was ended by signal 9"));
     ck_assert_int_eq(run_again(flat, path, "test \"$1\" = \"$2\" || kill -SEGV $$"), HF_OK);

@@ -76,7 +76,7 @@ static void demand_locked(void)
     hf_journal other;
     hf_messages m = {0};
     ck_assert_int_ne(hf_journal_open(result_path(), true, &other, &m), HF_OK);
-    ck_assert_ptr_nonnull(strstr(m.text, "another process is writing it"));
+    ck_assert_ptr_nonnull(strstr(m.text, "another process is writing this result"));
     hf_journal_close(&other, false);
     hf_messages_free(&m);
 }

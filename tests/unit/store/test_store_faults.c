@@ -80,7 +80,7 @@ START_TEST(names_that_cannot_be_are_told_at_once)
     const char *path, *folder = new_folder(&path);
     open_bow(&net);
     const char *const bad[] = {folder, temp_path("no/such/run.h5"), "", "/dev/null", temp_path("nowhere/")};
-    const char *const why[] = {"is a folder", "no/such", "no folder", "not a regular file", "no folder"};
+    const char *const why[] = {"is a folder", "no/such", "is empty", "not a regular file", "does not exist"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         for (int force = 0; force < 2; force++) {
             ck_assert_int_eq(refuse(bad[i], force, &net.scene, text, sizeof text),
@@ -112,7 +112,7 @@ START_TEST(abandoned_files_leave_nothing)
     ck_assert_int_eq(hf_store_create(path, 1, any_case(), &net.scene, NULL, 0, NULL, &second, &messages), HF_EXISTS);
     ck_assert_ptr_null(second);
     snprintf(text, sizeof text, "%s", messages.text);
-    ck_assert_msg(strstr(text, "another process is writing it") != NULL, "%s", text);
+    ck_assert_msg(strstr(text, "another process is writing this result") != NULL, "%s", text);
     hf_messages_free(&messages);
     find_shape(&net);
     ck_assert_int_eq(hf_store_form(store, &net.model, &net.work, NULL, &messages), HF_OK);

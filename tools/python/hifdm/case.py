@@ -483,9 +483,9 @@ def net(position_m: np.ndarray, end: np.ndarray, *, role: str | Sequence[str] | 
     `law`: law of each cable, which is "tension", "length", "force_density" or "elastic".
 
     `value`: target value of the law of each cable [n_cable], in N (tension), m (length), N/m (force density) or m
-    (unstressed length). If the target value is NaN, hifdm uses a default value. For the law "tension", the default is
-    the pretension of the case. For the law "length", the default is the distance between the target positions of the
-    end nodes.
+    (unstressed length). If the target value is NaN, hifdm uses a default value. For the law "tension", the default
+    value is the key `form.pretension_N`. For the law "length", the default is the distance between the target positions
+    of the end nodes.
 
     `EA_N`: axial stiffness of each cable [n_cable], N.
 
