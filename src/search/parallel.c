@@ -46,25 +46,20 @@ void hf_parallel_add(double *sum, double value)
     *sum += value;
 }
 
-/* Runs the rooms as tasks, in a thread of hf_parallel_for. Each task has its own room, whichever thread runs it. */
-static void run_inside(int n_thread, void (*work)(void *context, int room), void *context)
+void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *context)
 {
+    if (!hf_parallel_is_inside()) {
+#pragma omp parallel num_threads(n_thread)
+        work(context, omp_get_thread_num());
+        return;
+    }
+    /* In a thread of hf_parallel_for, each room is a task, whichever thread runs it. */
     for (int room = 1; room < n_thread; room++) {
 #pragma omp task firstprivate(room, work, context)
         work(context, room);
     }
     work(context, 0);
 #pragma omp taskwait
-}
-
-void hf_parallel_run(int n_thread, void (*work)(void *context, int room), void *context)
-{
-    if (hf_parallel_is_inside()) {
-        run_inside(n_thread, work, context);
-        return;
-    }
-#pragma omp parallel num_threads(n_thread)
-    work(context, omp_get_thread_num());
 }
 
 /* The items of hf_parallel_each. */
