@@ -38,15 +38,18 @@ void hf_residuals_free(hf_residuals *r)
     *r = (hf_residuals){0};
 }
 
+/* What the threads share. hf_residuals_find sets only r and w. */
 typedef struct {
-    hf_residuals *r;
+    const hf_residuals *r;
+    const hf_sensitivity *slopes;
     const hf_workspace *w;
-} entered;
+    double *rate, *gradient;
+} all_rates;
 
 /* Linearises the objectives in room i, whichever thread does it. */
 static void enter_room(void *context, int any_room, int i)
 {
-    const entered *q = context;
+    const all_rates *q = context;
     hf_residuals_room *room = &q->r->room[i];
     (void)any_room;
     room->status = hf_objectives_linearise(q->r->v->objectives, i == 0, q->w, &room->point, room->value);
@@ -57,7 +60,7 @@ hf_status hf_residuals_find(hf_residuals *r, const hf_workspace *w)
 {
     const hf_model *m = r->v->model;
     if (r->n_room) {
-        entered q = {r, w};
+        all_rates q = {.r = r, .w = w};
         hf_parallel_each(r->v->n_thread, r->n_room, enter_room, &q);
         for (int i = 0; i < r->n_room; i++)
             HF_TRY(r->room[i].status);
@@ -70,13 +73,6 @@ hf_status hf_residuals_find(hf_residuals *r, const hf_workspace *w)
     }
     return HF_OK;
 }
-
-typedef struct {
-    const hf_residuals *r;
-    const hf_sensitivity *slopes;
-    const hf_workspace *w;
-    double *rate, *gradient;
-} all_rates;
 
 static double *rate_of(const all_rates *q, int i_class)
 {
