@@ -18,7 +18,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* These constants decide how long a lane works on a design before hf_evaluate solves the design alone. Both ways reach
@@ -260,16 +259,11 @@ static double tension_ratio(const hf_chord_measures *now, hf_group group, int la
     return high_N > 0 ? high_N / now->lowest_N[group][lane] : (double)NAN;
 }
 
-static const hf_chord_measures *measures(const hf_chord *c, const hf_chord_lanes *l, hf_chord_progress *p)
-{
-    if (!p->is_measured) c->kernels->measure(c, l, &p->now);
-    p->is_measured = true;
-    return &p->now;
-}
-
 void hf_chord_report(const hf_chord *c, const hf_chord_lanes *l, int lane, hf_chord_progress *p, hf_form_result *r)
 {
-    const hf_chord_measures *now = measures(c, l, p);
+    const hf_chord_measures *now = &p->now;
+    if (!p->is_measured) c->kernels->measure(c, l, &p->now);
+    p->is_measured = true;
     *r = (hf_form_result){.status = HF_OK, .stop_reason = HF_STOPPED_CONVERGED, .culprit = -1};
     hf_result_blank(r);
     r->psi_m = c->evaluator->model->n_inner_node ? now->psi_m[lane] : (double)NAN;
