@@ -213,14 +213,10 @@ static void copy_point(const hf_population *population, int i, hf_front *f, int 
     memcpy(f->design + (size_t)place * n, population->design + (size_t)i * n, n * sizeof(double));
 }
 
-static bool are_equal(const hf_pareto *p, int a, int b)
-{
-    return !memcmp(hf_pareto_value(p, a), hf_pareto_value(p, b), (size_t)p->n_objective * sizeof(double));
-}
-
 hf_status hf_pareto_front(const hf_population *population, hf_front *front)
 {
     hf_pareto p = {.n = population->n_individual, .n_objective = population->n_objective};
+    size_t size = (size_t)p.n_objective * sizeof(double);
     void *block;
     int *rank, n_on = 0;
     *front = (hf_front){.minimised = -1, .knee = -1};
@@ -232,8 +228,8 @@ hf_status hf_pareto_front(const hf_population *population, hf_front *front)
     /* hf_pareto_rank leaves this order: by the objectives in turn, so that equal designs are neighbours. */
     for (int k = 0, last = -1; k < p.n; k++) {
         int i = order[k];
-        if (rank[i] > 0 || !is_feasible(&p, i) || (last >= 0 && are_equal(&p, last, i))) continue;
-        order[n_on++] = last = i;
+        bool is_new = last < 0 || memcmp(hf_pareto_value(&p, last), hf_pareto_value(&p, i), size) != 0;
+        if (rank[i] == 0 && is_feasible(&p, i) && is_new) order[n_on++] = last = i;
     }
     hf_status status = hf_front_create(p.n_objective, population->n_variable, n_on, front);
     for (int k = 0; status == HF_OK && k < n_on; k++)
