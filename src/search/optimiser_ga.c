@@ -190,12 +190,9 @@ static void list_elites(const breeder *g, const hf_population *p)
 /* Copies elite e to individual e of the next generation. */
 static void keep_elite(const breeder *g, const hf_population *now, hf_population *next, int e)
 {
-    size_t n = (size_t)now->n_variable;
-    int i = g->elite[e];
-    memcpy(next->design + (size_t)e * n, now->design + (size_t)i * n, n * sizeof(double));
-    next->result[e] = now->result[i];
+    hf_population_take_over(now, g->elite[e], next, e);
     next->crossover_rate[e] = next->mutation_rate[e] = 0;
-    next->parent[2 * e] = next->parent[2 * e + 1] = i;
+    next->parent[2 * e + 1] = g->elite[e];
     next->pending[e] = 0;
 }
 
