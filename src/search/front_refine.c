@@ -658,17 +658,6 @@ static double measure_lines(search *s)
     return longest;
 }
 
-/* Begins a line between two others, with the mean of their THIRD as its limit. The ends of the tighter line keep this
- * limit, so the searches begin there. An end of the looser line that also keeps it is an end of the new line. */
-static void begin_line(search *s, const line *tight, const line *loose)
-{
-    line *l = add_line(s, (third_of(s, tight) + third_of(s, loose)) / 2);
-    for (int e = 0; e < 2; e++) {
-        l->is_new[e] = value_of(s, loose->end[e], THIRD) > l->most;
-        l->end[e] = l->is_new[e] ? add(s, e, l->most, tight->end[e]->design, loose->end[e]->design) : loose->end[e];
-    }
-}
-
 /* Inserts the new lines in the order of their limits. A line without an end is removed, and no other line is sought
  * between the same neighbours. */
 static void place_lines(search *s, int first, line *const *tight)
@@ -692,7 +681,9 @@ static void place_lines(search *s, int first, line *const *tight)
     }
 }
 
-/* Adds up to n_more lines in the longest gaps between lines. */
+/* Adds up to n_more lines in the longest gaps between lines, with the mean of the THIRD of both neighbours as their
+ * limit. The ends of the tighter neighbour keep this limit, so the searches begin there. An end of the looser one that
+ * also keeps it is an end of the new line. */
 static hf_status halve_lines(search *s, int n_more, double longest)
 {
     line *tight[HF_FRONT_POINTS_MAX];
@@ -702,9 +693,14 @@ static hf_status halve_lines(search *s, int n_more, double longest)
         for (int i = 1; i + 1 < first; i++)
             if (s->line[i]->gap > s->line[at]->gap) at = i;
         if (!(s->line[at]->gap > LONG_GAP * longest)) break;
-        s->line[at]->gap = 0;
-        tight[s->n_line - first] = s->line[at];
-        begin_line(s, s->line[at], s->line[at + 1]);
+        line *low = s->line[at], *high = s->line[at + 1];
+        low->gap = 0;
+        tight[s->n_line - first] = low;
+        line *l = add_line(s, (third_of(s, low) + third_of(s, high)) / 2);
+        for (int e = 0; e < 2; e++) {
+            l->is_new[e] = value_of(s, high->end[e], THIRD) > l->most;
+            l->end[e] = l->is_new[e] ? add(s, e, l->most, low->end[e]->design, high->end[e]->design) : high->end[e];
+        }
     }
     HF_TRY(finish_lines(s, first));
     place_lines(s, first, tight);
