@@ -31,7 +31,6 @@
 #include <hifdm/cable_set.h>
 
 #include <math.h>
-#include <string.h>
 
 typedef struct {
     const hf_scene *scene;

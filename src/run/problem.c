@@ -6,7 +6,6 @@
 #include "run/problem_parts.h"
 #include "search/jacobian.h"
 #include "search/refine.h"
-#include "solve/limits.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -10,7 +10,6 @@
 #include "base/arena.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define WORD(name, word) word,

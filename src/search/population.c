@@ -12,7 +12,6 @@
 #include "net/variables.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 const char *const hf_population_stop_word[4] = {"running", "stagnation", "generations", "all_infeasible"};

@@ -14,7 +14,6 @@
 #include "solve/limits.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
