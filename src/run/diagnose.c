@@ -335,22 +335,17 @@ static int row_of_variable(const hf_model *m, int k)
     return m->variable ? m->variable[k].setting : 0;
 }
 
-/* Returns the class of a leading variable, chosen by a hash among the classes of its row. */
-static int class_of(const reach *q, int k)
-{
-    int n_row = q->p->settings.optimize.n_variable_row, n = n_row > 1 ? CLASSES / n_row : CLASSES;
-    return row_of_variable(&q->model, k) * n + (int)(hf_random_mix((uint64_t)k) % (uint64_t)n);
-}
-
+/* Links variables by class. The class of a leading variable is chosen by a hash among the classes of its row. */
 static void link_classes(reach *q)
 {
     const hf_model *m = &q->p->model;
-    int first[CLASSES];
+    int n_row = q->p->settings.optimize.n_variable_row, n = n_row > 1 ? CLASSES / n_row : CLASSES, first[CLASSES];
     for (int i = 0; i < CLASSES; i++)
         first[i] = -1;
     q->model.n_leader = 0;
     for (int k = 0; k < m->n_variable; k++) {
-        int i = class_of(q, m->variable_leader[k]);
+        int leader = m->variable_leader[k];
+        int i = row_of_variable(m, leader) * n + (int)(hf_random_mix((uint64_t)leader) % (uint64_t)n);
         if (first[i] < 0) first[i] = k;
         q->leader[k] = first[i];
         q->model.n_leader += first[i] == k;
@@ -376,13 +371,6 @@ static hf_status create_reach(const hf_problem *p, reach *q)
     link_classes(q);
     HF_TRY(hf_workspace_create(&q->model, &q->w));
     return hf_sensitivity_create(&q->v, &q->slopes);
-}
-
-static void destroy_reach(reach *q)
-{
-    hf_sensitivity_free(&q->slopes);
-    hf_workspace_free(&q->w);
-    hf_arena_free_block(q->block);
 }
 
 static void measure_class(reach *q, int i)
@@ -458,11 +446,6 @@ static bool changes_objective(const reach *q, const hf_objective *g)
     return true;
 }
 
-static bool changes_limit(const reach *q, const hf_limit *row)
-{
-    return row->kind == HF_LIMIT_DEFLECTION || any(q, row->n_cable, row->cable, pulls_otherwise);
-}
-
 /* Strikes out the rows that the variables change at the design in the workspace. */
 static void strike(reach *q)
 {
@@ -476,8 +459,11 @@ static void strike(reach *q)
         if (q->now.psi) q->now.psi = !any(q, q->model.n_inner_node, q->model.inner_row, moves_row);
         for (int i = 0; i < q->p->objectives.n_objective; i++)
             if (q->now.objective[i]) q->now.objective[i] = !changes_objective(q, &q->p->objectives.objective[i]);
-        for (int i = 0; i < o->n_limit; i++)
-            if (q->now.limit[i]) q->now.limit[i] = !changes_limit(q, &q->p->limits.row[i]);
+        for (int i = 0; i < o->n_limit; i++) {
+            const hf_limit *row = &q->p->limits.row[i];
+            q->now.limit[i] = q->now.limit[i] && row->kind != HF_LIMIT_DEFLECTION &&
+                              !any(q, row->n_cable, row->cable, pulls_otherwise);
+        }
     }
 }
 
@@ -599,7 +585,9 @@ hf_status hf_reach_check(const hf_problem *p, hf_messages *messages)
     if (status == HF_OK) status = look_at_reach(&q);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the derivatives of the objectives");
     if (status == HF_OK) status = tell_reach(&q, messages);
-    destroy_reach(&q);
+    hf_sensitivity_free(&q.slopes);
+    hf_workspace_free(&q.w);
+    hf_arena_free_block(q.block);
     return status == HF_NOT_EVALUATED ? HF_OK : status;
 }
 
@@ -752,16 +740,6 @@ static void count_objective(const hf_problem *p, const hf_objective *g, hf_place
         count_rows(to, m->end_row + 2 * (ptrdiff_t)g->cable[i], 2, HF_COUNTED);
 }
 
-static void find_cables(const hf_model *m, hf_places *to)
-{
-    for (int i = 0; i < 2 * m->n_cable; i++) {
-        to->cable_m[m->end_row[i]] += m->length_m[i / 2];
-        to->n_cable[m->end_row[i]]++;
-    }
-    for (int row = 0; row < m->n_node; row++)
-        if (to->n_cable[row]) to->cable_m[row] /= to->n_cable[row];
-}
-
 hf_status hf_places_keep(const hf_problem *p, hf_places *to)
 {
     const hf_model *m = &p->model;
@@ -771,7 +749,12 @@ hf_status hf_places_keep(const hf_problem *p, hf_places *to)
     HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_ARRAY(to->position_m, 3 * n), HF_ARRAY(to->cable_m, n),
                            HF_ARRAY(to->n_cable, n), HF_ARRAY(to->counted, n)));
     memcpy(to->position_m, p->workspace.position_m, 3 * n * sizeof(double));
-    find_cables(m, to);
+    for (int i = 0; i < 2 * m->n_cable; i++) {
+        to->cable_m[m->end_row[i]] += m->length_m[i / 2];
+        to->n_cable[m->end_row[i]]++;
+    }
+    for (int row = 0; row < m->n_node; row++)
+        if (to->n_cable[row]) to->cable_m[row] /= to->n_cable[row];
     if (p->objectives.n_objective == 0) count_objective(p, &psi, to);
     for (int k = 0; k < p->objectives.n_objective; k++)
         count_objective(p, &p->objectives.objective[k], to);
