@@ -124,19 +124,16 @@ static void find_key_place(const void *settings, const char *key, char *text, si
     hf_config_location(settings, key, text, size);
 }
 
-static hf_status find_objectives(hf_problem *p, hf_messages *messages)
-{
-    HF_TRY(hf_problem_nets_make(p, messages));
-    return hf_objectives_create(&p->scene, &p->model, &p->settings.optimize, &p->surface, &p->facets,
-                                hf_problem_nets_of(p), &p->objectives, messages);
-}
-
 /* Creates limits and objectives from their rows, and reports the faults of both. */
 static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_status limits = hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), objectives = HF_OK;
-    if (o->n_term || o->n_front) objectives = find_objectives(p, messages);
+    bool has_objectives = o->n_term || o->n_front;
+    if (has_objectives) objectives = hf_problem_nets_make(p, messages);
+    if (has_objectives && objectives == HF_OK)
+        objectives = hf_objectives_create(&p->scene, &p->model, o, &p->surface, &p->facets, hf_problem_nets_of(p),
+                                          &p->objectives, messages);
     return limits != HF_OK ? limits : objectives;
 }
 
@@ -351,25 +348,20 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
                c->has_tolerance ? "tolerance" : "", c->path);
 }
 
-static hf_status check_base(const hf_problem *p, hf_messages *messages)
-{
-    for (int k = 0; k < p->model.n_variable; k++)
-        HF_TRY(check_variable(p, k, messages));
-    if (!hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_refine_applies(&p->evaluator))
-        return hf_error(messages, HF_BAD_CASE, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
-    return HF_OK;
-}
-
 hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
 {
     const hf_model *m = &p->model;
-    memcpy(p->start_q_N_per_m, p->workspace.q_N_per_m, (size_t)m->n_cable * sizeof(double));
     const hf_workspace *w = &p->workspace;
+    memcpy(p->start_q_N_per_m, w->q_N_per_m, (size_t)m->n_cable * sizeof(double));
     hf_variables_read(m, w->q_N_per_m, w->tension_N, w->length_m, p->initial);
     p->evaluator = hf_problem_evaluator(p);
     if (!p->point.block && hf_objectives_point_create(p->evaluator.objectives, &p->point) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
-    if (p->settings.has_optimize && m->n_variable > 0) HF_TRY(check_base(p, messages));
+    bool optimizes = p->settings.has_optimize && m->n_variable > 0;
+    for (int k = 0; k < m->n_variable && optimizes; k++)
+        HF_TRY(check_variable(p, k, messages));
+    if (optimizes && !hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_refine_applies(&p->evaluator))
+        return hf_error(messages, HF_BAD_CASE, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
     hf_symmetry_average(m, p->initial);
     return HF_OK;
 }
