@@ -76,16 +76,6 @@ static hf_status begin_generations(search *q)
     return HF_OK;
 }
 
-/* Evaluates the first generation of this session. Returns false if there is none. */
-static bool evaluate_first(search *q)
-{
-    hf_run *r = q->run;
-    const hf_population *p = &r->optimiser.population;
-    if (q->first_generation > 0) return hf_batch_next(&r->problem.batch, &r->optimiser, NULL, NULL);
-    hf_batch_run(&r->problem.batch, p->n_individual, p->design, p->pending, p->result);
-    return true;
-}
-
 static void note_best(const hf_population *p, hf_summary *s)
 {
     hf_form_result *best = &s->stage[HF_STAGE_SEARCH].result;
@@ -146,7 +136,11 @@ static hf_status evolve(search *q)
     hf_run *r = q->run;
     const hf_population *p = &r->optimiser.population;
     q->start_s = hf_clock_s();
-    bool more = evaluate_first(q);
+    bool more = true;
+    if (q->first_generation > 0)
+        more = hf_batch_next(&r->problem.batch, &r->optimiser, NULL, NULL);
+    else
+        hf_batch_run(&r->problem.batch, p->n_individual, p->design, p->pending, p->result);
     while (more) {
         hf_optimiser_tell(&r->optimiser);
         if (p->generation == 0) q->summary->search.initial_psi_m = p->result[0].psi_m;
