@@ -75,16 +75,6 @@ static void doubt_pattern(const hf_pattern_settings *s, const hf_pattern_summary
                    HF_PATTERN_WIDTH_STEPS);
 }
 
-static void sum_up_pattern(const hf_pattern_settings *s, const hf_pattern_table *t, const hf_feed *feed,
-                           hf_pattern_summary *to)
-{
-    *to = (hf_pattern_summary){.n_frequency = t->n_frequency, .n_cut = t->n_cut, .feed = *feed};
-    memcpy(to->frequency_Hz, t->frequency_Hz, (size_t)t->n_frequency * sizeof(double));
-    memcpy(to->phi_deg, t->phi_deg, (size_t)t->n_cut * sizeof(double));
-    for (int k = 0; k < t->n_frequency * t->n_cut; k++)
-        to->figure[k] = hf_pattern_figures(t->n_theta, s->theta_deg, t->co_dBi + (size_t)k * (size_t)t->n_theta);
-}
-
 static hf_status solve_pattern(const hf_run *r, const hf_pattern_surface *surface, hf_pattern_table *t,
                                hf_pattern_summary *to)
 {
@@ -100,7 +90,11 @@ static hf_status solve_pattern(const hf_run *r, const hf_pattern_surface *surfac
     hf_feed_make(&p->surface, &p->facets, p->scene.position_m, &feed);
     for (int i = 0; i < frequencies->n; i++)
         HF_TRY(solve_frequency(r, surface, &feed, i, t));
-    sum_up_pattern(s, t, &feed, to);
+    *to = (hf_pattern_summary){.n_frequency = t->n_frequency, .n_cut = t->n_cut, .feed = feed};
+    memcpy(to->frequency_Hz, t->frequency_Hz, (size_t)t->n_frequency * sizeof(double));
+    memcpy(to->phi_deg, t->phi_deg, (size_t)t->n_cut * sizeof(double));
+    for (int k = 0; k < t->n_frequency * t->n_cut; k++)
+        to->figure[k] = hf_pattern_figures(t->n_theta, s->theta_deg, t->co_dBi + (size_t)k * (size_t)t->n_theta);
     return HF_OK;
 }
 
@@ -217,20 +211,15 @@ hf_status hf_stage_measure(hf_run *r, hf_stage stage, const hf_workspace *w, hf_
 
 /* ---- the result ---- */
 
-/* Sets r->truss to the forces and displacements of the truss, if there is one, under the net of this shape. */
-static hf_status load_truss(hf_run *r, hf_workspace *w, hf_messages *messages)
-{
-    const hf_problem *p = &r->problem;
-    if (!p->settings.has_truss) return HF_OK;
-    hf_carrier_state_free(&r->truss);
-    hf_coupling_forces(&p->model, w);
-    hf_status status = hf_carrier_load(&p->carrier, w->attachment_force_N, NULL, &r->truss);
-    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the forces in the truss");
-}
-
 hf_status hf_stage_take(hf_run *r, hf_workspace *w, hf_messages *messages)
 {
-    HF_TRY(load_truss(r, w, messages));
+    const hf_problem *p = &r->problem;
+    if (p->settings.has_truss) { /* its forces and displacements under the net of this shape */
+        hf_carrier_state_free(&r->truss);
+        hf_coupling_forces(&p->model, w);
+        hf_status status = hf_carrier_load(&p->carrier, w->attachment_force_N, NULL, &r->truss);
+        if (status != HF_OK) return hf_error(messages, status, "out of memory for the forces in the truss");
+    }
     r->shape = w;
-    return r->problem.load_cases.n ? hf_load_case_stage_take(&r->problem, w, &r->cases, messages) : HF_OK;
+    return p->load_cases.n ? hf_load_case_stage_take(p, w, &r->cases, messages) : HF_OK;
 }
