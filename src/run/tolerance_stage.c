@@ -139,13 +139,6 @@ static const char *place_section(const hf_case *c, char place[HF_LOCATION_SIZE])
     return place;
 }
 
-static hf_status check_EA(const hf_problem *p, hf_messages *messages)
-{
-    char place[HF_LOCATION_SIZE];
-    return hf_cable_demand_EA(&p->scene, place_section(&p->settings, place), "errors of as-built nets need", "",
-                              messages);
-}
-
 /* Refuses struts that are visible in the laws. Struts that result from other laws show only after form-finding. */
 static hf_status check_struts(const hf_problem *p, hf_messages *messages)
 {
@@ -174,10 +167,12 @@ hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_mes
                         "%s: the case has no `tolerance` section. 'hifdm schema' lists the keys of this section",
                         p->settings.path);
     hf_material material;
+    char place[HF_LOCATION_SIZE];
     hf_status status = make_material(p, &material, messages), other[5] = {HF_OK};
     if (status != HF_NO_MEMORY) other[2] = check_cuts(p, &material, messages);
     hf_material_free(&material);
-    other[0] = check_EA(p, messages);
+    place_section(&p->settings, place);
+    other[0] = hf_cable_demand_EA(&p->scene, place, "errors of as-built nets need", "", messages);
     other[1] = check_measures(p, messages);
     other[3] = check_struts(p, messages);
     other[4] = check_truss_heat(p, messages);
@@ -234,11 +229,6 @@ static void job_free(job *j)
     hf_built_free(&j->built);
 }
 
-static bool is_mine(const hf_run_request *q, int chunk)
-{
-    return q->part.task < 0 || q->part.tasks <= 0 || chunk % q->part.tasks == q->part.task;
-}
-
 /* Passes the progress of this phase to the observer, if there is one. No design is evaluated here. */
 static void report(const job *j, hf_run_progress now)
 {
@@ -270,14 +260,15 @@ static void report_scale(void *context, double scale)
 
 static hf_status find_samples(job *j, hf_messages *messages)
 {
-    const hf_run_request *q = j->request;
+    const hf_run_part *part = &j->request->part;
     hf_samples *s = &j->samples;
     long n_new = 0;
     report_samples(j, 0, false);
     for (int chunk = 0; chunk < s->n_all; chunk++) {
         int n;
         long first = hf_samples_first(s, chunk, &n);
-        if (s->has[chunk] || !is_mine(q, chunk)) continue;
+        bool is_mine = part->task < 0 || part->tasks <= 0 || chunk % part->tasks == part->task;
+        if (s->has[chunk] || !is_mine) continue;
         hf_status status = hf_montecarlo_run(&j->montecarlo, 1, first, n);
         if (status == HF_NO_MEMORY)
             hf_error(messages, status, "tolerance: out of memory for the results of the samples");
@@ -450,14 +441,6 @@ static void aim_beam(job *j, hf_messages *messages)
 #define TRIED_S 0.1
 #define OPERATIONS_PER_S 8e9 /* of one core, in solves with several right-hand sides */
 
-/* Returns the estimated time of the first order, s: one solve for each coordinate of an inner node
- * (built/covariance). */
-static double first_order_s(const hf_model *m)
-{
-    double rows = 3.0 * m->n_free;
-    return 3.0 * m->n_inner_node * 4 * rows * (3.0 * m->half_bandwidth + 2) / OPERATIONS_PER_S;
-}
-
 static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, hf_messages *messages)
 {
     const hf_problem *p = j->problem;
@@ -501,7 +484,10 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
     const hf_run_request request = {.control.threads = 1};
     job j = {.request = &request, .problem = p, .shape = shape, .begin_s = hf_clock_thread_cpu_s()};
     hf_messages messages = {0};
-    *trial = (hf_tolerance_trial){.begin_s = first_order_s(&p->model)};
+    /* The first order takes one solve for each coordinate of an inner node (built/covariance). */
+    double rows = 3.0 * p->model.n_free, solves = 3.0 * p->model.n_inner_node;
+    *trial =
+        (hf_tolerance_trial){.begin_s = solves * 4 * rows * (3.0 * p->model.half_bandwidth + 2) / OPERATIONS_PER_S};
     if (p->settings.tolerance.required_yield > 0) {
         trial->scale_yields = HF_SCALE_YIELDS;
         trial->scale_samples = scale_samples(&p->settings.tolerance);
