@@ -41,13 +41,6 @@ static bool leaves_result(hf_status status)
     return status == HF_OK || status == HF_NOT_CONVERGED || status == HF_NO_FEASIBLE;
 }
 
-/* Returns true if the result keeps its design although a stage after it failed. That is so only if another attempt
- * would fail, too; the result then contains the reason. */
-static bool keeps_design(const hf_run *r, hf_status status)
-{
-    return r->has_design && status != HF_OK && status != HF_INTERRUPTED && !is_of_machine(status);
-}
-
 /* ---- before the stages ---- */
 
 static hf_status prepare(hf_run *r, hf_summary *s, hf_messages *messages)
@@ -205,7 +198,9 @@ static hf_status execute(hf_run *r, hf_summary *s, hf_messages *messages)
     if (!r->request->output.no_file) HF_TRY(open_store(r, &state, messages));
     if (state == HF_STORE_FINISHED) return repeat_finished(r, s, messages);
     hf_status status = run_stages(r, s, messages);
-    bool has_design_alone = keeps_design(r, status);
+    /* The result keeps its design although a stage after it failed, if another attempt would fail, too. The result
+     * then contains the reason. */
+    bool has_design_alone = r->has_design && status != HF_OK && status != HF_INTERRUPTED && !is_of_machine(status);
     if (hf_tolerance_stage_is_task(r->request) || !(leaves_result(status) || has_design_alone)) return status;
     if (has_design_alone) hf_warning(messages, "tolerance: the result has only the design and no samples");
     return finish(r, s, status, messages);
