@@ -64,21 +64,6 @@ static hf_status choose_points(sweep *w, const hf_points *points)
 
 /* ---- one point ---- */
 
-/* Writes the first error message as one line, without "error: ". */
-static void first_error(const hf_messages *said, hf_status status, char reason[HF_LEDGER_REASON_MAX + 1])
-{
-    const char *why = hf_text_first_error(said->text, hf_status_text(status));
-    snprintf(reason, HF_LEDGER_REASON_MAX + 1, "%.*s", (int)strcspn(why, "\n"), why);
-    hf_text_trim_utf8(reason);
-}
-
-/* Returns true for a fault of the machine, which another attempt may not have. The point does not count as failed, and
- * no other point begins. */
-static bool is_of_machine(hf_status status)
-{
-    return status == HF_IO || status == HF_NO_MEMORY;
-}
-
 static void stop_sweep(sweep *w, hf_status status, const char *id, const char *words)
 {
     pthread_mutex_lock(&w->lock);
@@ -102,11 +87,16 @@ static void warn_of_files(sweep *w, const hf_messages *said)
 
 static void finish_point(sweep *w, int i, hf_status status, const hf_messages *said, const hf_summary *summary)
 {
-    char reason[HF_LEDGER_REASON_MAX + 1] = "";
+    char reason[HF_LEDGER_REASON_MAX + 1] = ""; /* the first error message as one line */
     hf_messages trouble = {0};
     const hf_sweep_request *r = w->request;
-    if (status != HF_OK) first_error(said, status, reason);
-    if (is_of_machine(status)) {
+    if (status != HF_OK) {
+        const char *why = hf_text_first_error(said->text, hf_status_text(status));
+        snprintf(reason, sizeof reason, "%.*s", (int)strcspn(why, "\n"), why);
+        hf_text_trim_utf8(reason);
+    }
+    /* Another attempt may not have a fault of the machine: the point does not count as failed, and no other begins. */
+    if (status == HF_IO || status == HF_NO_MEMORY) {
         stop_sweep(w, status, r->study->id[i], reason);
         return;
     }
@@ -122,11 +112,6 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
     if (r->observer) r->observer(r->observer_context, &w->count);
     pthread_mutex_unlock(&w->lock);
     hf_messages_free(&trouble);
-}
-
-static bool must_stop(const sweep *w)
-{
-    return *w->request->stop_requested || w->fatal != HF_OK;
 }
 
 /* A point that has been computed and whose result file is being written to the disk. */
@@ -183,8 +168,7 @@ static void run_point(void *context, int k)
     sweep *w = context;
     int i = w->todo[k];
     const char *id = w->request->study->id[i];
-    if (must_stop(w)) return;
-    if (!claim(w, i)) return;
+    if (*w->request->stop_requested || w->fatal != HF_OK || !claim(w, i)) return;
     char file[HF_PATH_SIZE + 32], output[HF_OUTPUT_SIZE];
     hf_study_overrides overrides;
     finished_point *p = calloc(1, sizeof *p);
