@@ -167,13 +167,6 @@ static hf_status run_load_case(const hf_problem *p, const hf_load_case *load_cas
 
 /* ---- all load cases ---- */
 
-static void blank(const char *name, hf_load_case_summary *s)
-{
-    *s = (hf_load_case_summary){.result.status = HF_NOT_EVALUATED};
-    snprintf(s->name, sizeof s->name, "%s", name);
-    s->tension_min_N = s->tension_max_N = s->displacement_rms_m = s->member_force_max_N = (double)NAN;
-}
-
 static void warn(const hf_load_case_summary *s, hf_messages *messages)
 {
     const hf_form_result *r = &s->result;
@@ -194,7 +187,9 @@ hf_status hf_stage_load_cases(hf_run *r, hf_summary *summary, hf_messages *messa
     if (!summary->load_case) return hf_error(messages, HF_NO_MEMORY, "out of memory for the load cases");
     for (int k = 0; k < p->load_cases.n; k++) {
         hf_load_case_summary *s = &summary->load_case[k];
-        blank(p->load_cases.load_case[k].name, s);
+        *s = (hf_load_case_summary){.result.status = HF_NOT_EVALUATED};
+        snprintf(s->name, sizeof s->name, "%s", p->load_cases.load_case[k].name);
+        s->tension_min_N = s->tension_max_N = s->displacement_rms_m = s->member_force_max_N = (double)NAN;
         HF_TRY(run_load_case(p, &p->load_cases.load_case[k], c, r->store, s, messages));
         if (hf_run_must_stop(r)) return HF_INTERRUPTED;
         summary->n_load_case = k + 1;
