@@ -60,12 +60,6 @@ double hf_adjust_case_sigmas(const hf_adjust_case *j, int e)
     return j->prior.sigma_m[e] > 0 ? j->estimate.cut_m[e] / j->prior.sigma_m[e] : 0;
 }
 
-/* Returns true if nearly all of the error of cable e is shared with its spool, or is that of the temperature. */
-static bool is_shared(const hf_adjust_case *j, int e)
-{
-    return fabs(hf_estimate_own_m(&j->estimate, e)) < TOLD * fabs(j->estimate.cut_m[e]);
-}
-
 double hf_adjust_case_off_m(const hf_adjust_case *j, int row)
 {
     double square = 0;
@@ -106,8 +100,9 @@ static hf_status find_cables(hf_adjust_case *j)
     j->n_out = 0;
     for (int e = 0; e < j->built.model.n_cable; e++) {
         double size = fabs(hf_adjust_case_sigmas(j, e));
-        if (size > HF_ADJUST_CASE_STANDS_OUT && !is_shared(j, e))
-            j->sized[j->n_out++] = (hf_adjust_case_sized){size, e};
+        /* Nearly all of a shared error is that of the spool or of the temperature. */
+        bool is_shared = fabs(hf_estimate_own_m(&j->estimate, e)) < TOLD * fabs(j->estimate.cut_m[e]);
+        if (size > HF_ADJUST_CASE_STANDS_OUT && !is_shared) j->sized[j->n_out++] = (hf_adjust_case_sized){size, e};
     }
     sort(j, j->n_out, j->out);
     HF_TRY(hf_estimate_belief(&j->estimate, j->n_out, j->out, j->by_places_m));
@@ -323,16 +318,6 @@ static hf_status find_least(job *j, hf_messages *messages)
     return status;
 }
 
-static hf_status find_figure(job *j, hf_messages *messages)
-{
-    const hf_problem *p = &j->problem;
-    if (p->settings.adjust.figure == HF_FIGURE_FACETS && p->facets.n_facet == 0)
-        return hf_error(messages, HF_BAD_CASE,
-                        "%s: the value facets of adjust.figure needs facets, but this net has no facets",
-                        p->settings.path);
-    return make_objectives(j, p->settings.adjust.figure, &j->objectives, messages);
-}
-
 static hf_status explain_failure(const job *j, hf_status status, const char *what, hf_messages *messages)
 {
     if (status == HF_OK || status == HF_INTERRUPTED) return status;
@@ -406,16 +391,6 @@ static double measured_psi_m(const job *j)
 
 /* ---- interface ---- */
 
-static hf_status allocate_job(job *j, hf_messages *messages)
-{
-    size_t n_cable = (size_t)j->problem.scene.n_cable, n_node = (size_t)j->problem.scene.n_node;
-    if (HF_ARENA_ARRAYS(&j->block, HF_ARRAY(j->cable, n_cable), HF_ARRAY(j->least_N, n_cable),
-                        HF_ARRAY(j->expected_m, n_node), HF_ARRAY(j->out, n_cable), HF_ARRAY(j->by_places_m, n_cable),
-                        HF_ARRAY(j->far_row, n_node), HF_ARRAY(j->sized, n_cable > n_node ? n_cable : n_node)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d cables", j->problem.scene.n_cable);
-    return HF_OK;
-}
-
 void hf_adjust_case_free(hf_adjust_case *j)
 {
     hf_arena_free_block(j->adjustment.block);
@@ -438,19 +413,28 @@ hf_status hf_adjust_case_load(const char *path, const char *const *set, int n_se
 hf_status hf_adjust_case_read(const char *measured_path, int threads, job *j, hf_messages *messages)
 {
     const hf_problem *p = &j->problem;
+    size_t n_cable = (size_t)p->scene.n_cable, n_node = (size_t)p->scene.n_node;
     j->measured_path = measured_path;
     j->threads = threads;
-    HF_TRY(allocate_job(j, messages));
+    if (HF_ARENA_ARRAYS(&j->block, HF_ARRAY(j->cable, n_cable), HF_ARRAY(j->least_N, n_cable),
+                        HF_ARRAY(j->expected_m, n_node), HF_ARRAY(j->out, n_cable), HF_ARRAY(j->by_places_m, n_cable),
+                        HF_ARRAY(j->far_row, n_node), HF_ARRAY(j->sized, n_cable > n_node ? n_cable : n_node)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for %d cables", p->scene.n_cable);
     HF_TRY(pick_cables(j, messages));
     return hf_measured_read(measured_path, &p->scene, &p->model, p->settings.adjust.sigma_m, &j->measured, messages);
 }
 
 hf_status hf_adjust_case_find(job *j, hf_messages *messages)
 {
-    take_aim(j, j->problem.settings.adjust.aim);
+    const hf_adjust_settings *s = &j->problem.settings.adjust;
+    take_aim(j, s->aim);
     HF_TRY(find_prior(j, messages));
     HF_TRY(find_least(j, messages));
-    HF_TRY(find_figure(j, messages));
+    if (s->figure == HF_FIGURE_FACETS && j->problem.facets.n_facet == 0)
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: the value facets of adjust.figure needs facets, but this net has no facets",
+                        j->problem.settings.path);
+    HF_TRY(make_objectives(j, s->figure, &j->objectives, messages));
     HF_TRY(estimate_errors(j, messages));
     j->measured_m = measured_psi_m(j);
     HF_TRY(explain_failure(j, find_cables(j), "the estimated net", messages));
