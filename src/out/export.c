@@ -131,14 +131,13 @@ void hf_export_free(hf_export_stored *stored)
     hf_summary_free(&stored->summary);
 }
 
-void hf_export_ends_of(const hf_scene *s, int e, FILE *f)
+void hf_export_ends(const char *id, const char *const *node_id, const int end[2], FILE *f)
 {
-    hf_csv_write_id(s->cable_id[e], f);
+    hf_csv_write_id(id, f);
     for (int k = 0; k < 2; k++) {
         fputc(',', f);
-        hf_csv_write_id(s->node_id[s->end[2 * e + k]], f);
+        hf_csv_write_id(node_id[end[k]], f);
     }
-    fprintf(f, ",%s", hf_group_word[s->group[e]]);
 }
 
 void hf_export_sets_of(const hf_scene *s, int e, FILE *f)

@@ -107,8 +107,8 @@ hf_status hf_export_claim_part(const hf_export_request *request, const char *nam
 hf_status hf_export_files(const hf_export_request *request, hf_export_file *file, int n, const void *context,
                           hf_messages *messages);
 
-/* Writes the first cells of cable i_cable: id,i,j,group. */
-void hf_export_ends_of(const hf_scene *scene, int i_cable, FILE *file);
+/* Writes the first cells of a cable or a member: id,i,j. node_id has the ids of all nodes. */
+void hf_export_ends(const char *id, const char *const *node_id, const int end[2], FILE *file);
 
 /* Writes the cell of cable i_cable in the column `set`, with a comma before it. Writes nothing when the scene has no
  * sets. */

@@ -40,9 +40,9 @@ static void write_cables(const void *context, FILE *f)
     const hf_shape *shape = ((const view *)context)->shape;
     fprintf(f, "id,i,j,group,law,length_m,tension_N,q_N_per_m%s\n", s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
-        hf_export_ends_of(s, e, f);
-        fprintf(f, ",%s,%.17g,%.17g,%.17g", hf_law_word[shape->law[e]], shape->length_m[e], shape->tension_N[e],
-                shape->q_N_per_m[e]);
+        hf_export_ends(s->cable_id[e], s->node_id, s->end + 2 * e, f);
+        fprintf(f, ",%s,%s,%.17g,%.17g,%.17g", hf_group_word[s->group[e]], hf_law_word[shape->law[e]],
+                shape->length_m[e], shape->tension_N[e], shape->q_N_per_m[e]);
         hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }
@@ -104,11 +104,7 @@ static void write_members(const void *context, FILE *f)
 #define VALUE(name, units, otherwise, description) t->name[e],
         const double number[] = {HF_MEMBER_NUMBERS(VALUE)};
 #undef VALUE
-        hf_csv_write_id(t->member_id[e], f);
-        for (int k = 0; k < 2; k++) {
-            fputc(',', f);
-            hf_csv_write_id(t->node_id[t->end[2 * e + k]], f);
-        }
+        hf_export_ends(t->member_id[e], t->node_id, t->end + 2 * e, f);
         for (size_t k = 0; k < sizeof number / sizeof *number; k++)
             fprintf(f, isfinite(number[k]) ? ",%.17g" : ",", number[k]); /* an infinite shear area is an empty cell */
         fprintf(f, ",%s,%s", hf_joint_word[t->joint[e]], hf_unit_word[t->unit[e]]);

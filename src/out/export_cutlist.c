@@ -48,9 +48,10 @@ static void write_cables(const void *context, FILE *f)
         s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
         hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
-        hf_export_ends_of(s, e, f);
-        fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s,%.17g", c.tension_N, c.length_m, c.l0_m,
-                c.length_m - c.l0_m, s->EA_N[e], c.unstressed_minus_target_m, hf_law_word[HF_LAW_ELASTIC], c.l0_m);
+        hf_export_ends(s->cable_id[e], s->node_id, s->end + 2 * e, f);
+        fprintf(f, ",%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%s,%.17g", hf_group_word[s->group[e]], c.tension_N,
+                c.length_m, c.l0_m, c.length_m - c.l0_m, s->EA_N[e], c.unstressed_minus_target_m,
+                hf_law_word[HF_LAW_ELASTIC], c.l0_m);
         hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }
@@ -70,9 +71,9 @@ static void write_bench(const void *context, FILE *f)
             s->n_set ? ",set" : "");
     for (int e = 0; e < s->n_cable; e++) {
         hf_cut c = hf_cut_of(s, v->shape, v->reference_N, e);
-        hf_export_ends_of(s, e, f);
-        fprintf(f, ",%.3f,%.3f,%.3f,%.2f,%.3f", bench_mm(c.l0_m), bench_mm(c.length_m), bench_mm(c.length_m - c.l0_m),
-                c.tension_N, bench_mm(c.unstressed_minus_target_m));
+        hf_export_ends(s->cable_id[e], s->node_id, s->end + 2 * e, f);
+        fprintf(f, ",%s,%.3f,%.3f,%.3f,%.2f,%.3f", hf_group_word[s->group[e]], bench_mm(c.l0_m), bench_mm(c.length_m),
+                bench_mm(c.length_m - c.l0_m), c.tension_N, bench_mm(c.unstressed_minus_target_m));
         hf_export_sets_of(s, e, f);
         fputc('\n', f);
     }
