@@ -10,31 +10,23 @@
 
 /* ---- lines ---- */
 
-static void print_escaped(const char *text, FILE *f)
+void hf_print_line(FILE *f, const char *format, ...)
 {
-    static char shown[LINE_SIZE];
+    static char text[LINE_SIZE], shown[LINE_SIZE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
     hf_text_escape(text, shown, sizeof shown);
     fputs(shown, f);
     fputc('\n', f);
 }
 
-void hf_print_line(FILE *f, const char *format, ...)
-{
-    static char text[LINE_SIZE];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    print_escaped(text, f);
-}
-
 void hf_print_lines(const char *lines, FILE *f)
 {
-    static char text[LINE_SIZE];
     for (size_t n; *lines; lines += n + (lines[n] != '\0')) {
         n = strcspn(lines, "\n");
-        snprintf(text, sizeof text, "%.*s", (int)n, lines);
-        print_escaped(text, f);
+        hf_print_line(f, "%.*s", (int)n, lines);
     }
 }
 
