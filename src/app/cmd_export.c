@@ -6,34 +6,24 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Writes the list of options, "--csv DIR, --vtk DIR or --cutlist FILE", into text. */
-static void list_exporters(char *text, size_t size)
-{
-    char item[64];
-    *text = '\0';
-    for (int i = 0; i < HF_N_EXPORTER; i++) {
-        snprintf(item, sizeof item, "%s %s", hf_exporter_table[i]->option, hf_exporter_table[i]->argument);
-        hf_text_append(text, size, i == HF_N_EXPORTER - 1 ? " or " : ", ", item, "");
-    }
-}
-
 /* Checks that at least one format is requested, and that --stage and --load-case suit the formats. Finds how much of
  * the result the formats read, and whether one of them writes one shape. Returns HF_OK or HF_BAD_USAGE. */
 static hf_status check_request(const hf_options *o, hf_export_extent *extent, bool *has_one_shape,
                                hf_messages *messages)
 {
-    char list[512];
+    char list[512] = "", item[64]; /* "--csv DIR, --vtk DIR or --cutlist FILE" */
     const hf_exporter *every_shape = NULL;
     *extent = HF_EXPORT_SUMMARY;
     *has_one_shape = false;
     for (int i = 0; i < HF_N_EXPORTER; i++) {
         const hf_exporter *e = hf_exporter_table[i];
+        snprintf(item, sizeof item, "%s %s", e->option, e->argument);
+        hf_text_append(list, sizeof list, i == HF_N_EXPORTER - 1 ? " or " : ", ", item, "");
         if (!o->export_to[i]) continue;
         if (e->reads > *extent) *extent = e->reads;
         *has_one_shape |= e->takes_stage;
         if (!e->takes_stage) every_shape = e;
     }
-    list_exporters(list, sizeof list);
     if (!*has_one_shape && !every_shape) return hf_error(messages, HF_BAD_USAGE, "'hifdm export' needs %s", list);
     if (o->stage && o->load_case)
         return hf_error(messages, HF_BAD_USAGE, "the options --stage and --load-case cannot be combined");
