@@ -111,15 +111,6 @@ static hf_status read_stage(hf_merged *m, hf_merged_stage stage, hf_messages *me
     return read_group(m, stage, surface, "", messages);
 }
 
-static hf_status read_figures(hf_merged *m, hf_messages *messages)
-{
-    for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_BUILT; stage++)
-        HF_TRY(read_stage(m, stage, messages));
-    for (int k = 0; k < N_BUILT; k++)
-        HF_TRY(read_figure(m, HF_MERGED_BUILT, "/points/tolerance", key_as_built[k], messages));
-    return read_load_cases(m, messages);
-}
-
 static hf_status read_axes(hf_merged *m, hf_messages *messages)
 {
     char name[512];
@@ -392,7 +383,11 @@ hf_status hf_merged_read(const char *path, hf_merged *m, hf_messages *messages)
     *m = (hf_merged){.path = path, .lead = -1, .best = -1};
     HF_TRY(read_points(m, messages));
     HF_TRY(read_axes(m, messages));
-    HF_TRY(read_figures(m, messages));
+    for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_BUILT; stage++)
+        HF_TRY(read_stage(m, stage, messages));
+    for (int k = 0; k < N_BUILT; k++)
+        HF_TRY(read_figure(m, HF_MERGED_BUILT, "/points/tolerance", key_as_built[k], messages));
+    HF_TRY(read_load_cases(m, messages));
     for (int k = 0; k < m->n_figure; k++) {
         m->figure[k].is_same = is_same(m, &m->figure[k]);
         m->figure[k].is_psi = is_psi(m, &m->figure[k]);
