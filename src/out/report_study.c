@@ -95,11 +95,6 @@ static const char *stage_word(const hf_merged_figure *figure, char word[WORD_SIZ
     return word;
 }
 
-static bool is_of_one_stage(const hf_merged_figure *a, const hf_merged_figure *b)
-{
-    return a->stage == b->stage && !strcmp(a->load_case, b->load_case);
-}
-
 /* Writes the figures of each stage that has psi, of the as-built net, and of its load cases. */
 static void write_outputs(const hf_merged *m, FILE *f)
 {
@@ -114,8 +109,11 @@ static void write_outputs(const hf_merged *m, FILE *f)
             hf_json_text(&(hf_json){.file = f}, "stage", stage_word(first, word));
             comma = ",";
         }
-        for (next = k; next < m->n_figure && is_of_one_stage(first, &m->figure[next]); next++)
-            if (has_psi) hf_json_values(m->figure[next].key, m->figure[next].value.value, m->n, 1, 9, f);
+        for (next = k; next < m->n_figure; next++) {
+            const hf_merged_figure *figure = &m->figure[next];
+            if (figure->stage != first->stage || strcmp(figure->load_case, first->load_case) != 0) break;
+            if (has_psi) hf_json_values(figure->key, figure->value.value, m->n, 1, 9, f);
+        }
         if (has_psi) fputc('}', f);
     }
     fputc(']', f);
