@@ -60,20 +60,14 @@ void hf_print_steps(const hf_refine_summary *r, FILE *f)
             why[r->algorithm_stop]);
 }
 
-/* Returns the name of a limit: "boundary_ratio_cap", or a row of optimize.limits. */
-static const char *limit_of(const hf_held_limits *h, int i, char text[32])
-{
-    snprintf(text, 32, "optimize.limits.%d", h->row[i]);
-    return h->row[i] < 0 ? "boundary_ratio_cap" : text;
-}
-
 void hf_print_held(const hf_held_limits *h, FILE *f)
 {
     if (!h) return;
     char limit[32], more[40];
     for (int i = 0; i < h->n; i++) {
+        snprintf(limit, sizeof limit, h->row[i] < 0 ? "boundary_ratio_cap" : "optimize.limits.%d", h->row[i]);
         snprintf(more, sizeof more, " and %d more", h->count[i] - 1);
-        hf_print_line(f, "                at a limit (%s): %s%s at %.6g", limit_of(h, i, limit), h->name[i],
+        hf_print_line(f, "                at a limit (%s): %s%s at %.6g", limit, h->name[i],
                       h->count[i] > 1 ? more : "", h->bound[i]);
     }
 }

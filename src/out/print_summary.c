@@ -347,13 +347,6 @@ static double front_unit(const hf_summary *s, int k, const char **unit)
     return scale;
 }
 
-/* Returns the factor of a slope for display, from the units of the minimised objective and of objective k. */
-static double slope_scale(const hf_summary *s, int k)
-{
-    const char *unit;
-    return front_unit(s, s->front->minimised, &unit) / front_unit(s, k, &unit);
-}
-
 static void print_slope_head(const hf_summary *s, int k, FILE *f)
 {
     const char *of, *per;
@@ -374,9 +367,12 @@ static void print_front_values(const hf_summary *s, const char *name, int number
     fprintf(f, "                %-15s", what);
     for (int k = 0; k < t->n_objective; k++)
         hf_print_objective(k ? ", " : " ", s->objectives.name[k], objective[k], false, f);
-    for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++)
-        if (k != t->minimised && isfinite(multiplier[k]))
-            fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] * slope_scale(s, k) : 0.0);
+    for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++) {
+        const char *unit;
+        if (k == t->minimised || !isfinite(multiplier[k])) continue;
+        double scale = front_unit(s, t->minimised, &unit) / front_unit(s, k, &unit);
+        fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] * scale : 0.0);
+    }
     fputc('\n', f);
 }
 
