@@ -164,11 +164,6 @@ static void print_places(const job *j, FILE *f)
     }
 }
 
-static const char *number_word(const hf_prior_number *n)
-{
-    return n->kind == HF_ERROR_TEMPERATURE ? "temperature_K" : n->kind == HF_ERROR_EA_BATCH ? "EA_ratio" : "cut_ratio";
-}
-
 /* Prints the numbers that the cables of a spool, or all cables, share, if they are not due to chance. */
 static void print_numbers(const job *j, FILE *f)
 {
@@ -318,7 +313,10 @@ static void print_json_numbers(const job *from, hf_json *j)
     for (int k = 0; k < from->prior.n_shared; k++) {
         const hf_prior_number *n = &from->prior.number[k];
         hf_json_open_row(j);
-        hf_json_text(j, "kind", number_word(n));
+        hf_json_text(j, "kind",
+                     n->kind == HF_ERROR_TEMPERATURE ? "temperature_K"
+                     : n->kind == HF_ERROR_EA_BATCH  ? "EA_ratio"
+                                                     : "cut_ratio");
         if (n->set) hf_json_text(j, "set", n->set);
         hf_json_number(j, "error", from->estimate.shared[k] * n->sigma);
         hf_json_number(j, "sigmas", fabs(from->estimate.shared[k]));
@@ -364,16 +362,6 @@ static void print_json_findings(const job *from, hf_json *j)
     print_json_numbers(from, j);
 }
 
-static void print_json_errors(const job *from, hf_json *j)
-{
-    hf_json_open_line(j, " ", "errors_m", '{');
-    for (int e = 0; e < from->built.model.n_cable; e++) {
-        if (e % 4 == 0) hf_json_line(j, "  ");
-        hf_json_number(j, from->built.scene.cable_id[e], from->estimate.cut_m[e]);
-    }
-    hf_json_close(j, '}');
-}
-
 static void print_json(const job *from, const hf_options *o, hf_status status, const char *messages, FILE *f)
 {
     hf_json j = {.file = f};
@@ -381,7 +369,12 @@ static void print_json(const job *from, const hf_options *o, hf_status status, c
     hf_json_text(&j, "status", hf_status_word(status));
     if (status == HF_OK) {
         print_json_findings(from, &j);
-        print_json_errors(from, &j);
+        hf_json_open_line(&j, " ", "errors_m", '{');
+        for (int e = 0; e < from->built.model.n_cable; e++) {
+            if (e % 4 == 0) hf_json_line(&j, "  ");
+            hf_json_number(&j, from->built.scene.cable_id[e], from->estimate.cut_m[e]);
+        }
+        hf_json_close(&j, '}');
     }
     hf_json_line(&j, " ");
     hf_json_text(&j, "version", hf_store_version());
