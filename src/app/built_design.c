@@ -69,18 +69,6 @@ static hf_status compare(const hf_options *o, const hf_problem *p, const hf_expo
 
 /* ---- the shape of the result ---- */
 
-/* Makes each cable keep its force density, because a design may have replaced the targets of the laws. A slack cable
- * keeps its law if that is still the law of the scene. It then has the length that its law gives, as in the cut
- * list. */
-static void hold_cables(const hf_model *m, const hf_shape *s, hf_workspace *w)
-{
-    for (int e = 0; e < m->n_cable; e++) {
-        if (hf_metrics_is_slack(m, w, e) && s->law[e] == m->law[e]) continue;
-        w->law[e] = HF_LAW_FORCE_DENSITY;
-        w->target[e] = s->q_N_per_m[e];
-    }
-}
-
 /* Copies the stored shape into the workspace, and computes the displacements by the truss. */
 static void take_shape(const hf_export_stored *stored, hf_problem *p)
 {
@@ -94,7 +82,14 @@ static void take_shape(const hf_export_stored *stored, hf_problem *p)
     memcpy(w->length_m, s->length_m, (size_t)m->n_cable * sizeof(double));
     memcpy(w->tension_N, s->tension_N, (size_t)m->n_cable * sizeof(double));
     memcpy(w->q_N_per_m, s->q_N_per_m, (size_t)m->n_cable * sizeof(double));
-    hold_cables(m, s, w);
+    /* Each cable keeps its force density, because a design may have replaced the targets of the laws. A slack cable
+     * keeps its law if that is still the law of the scene. It then has the length that its law gives, as in the cut
+     * list. */
+    for (int e = 0; e < m->n_cable; e++) {
+        if (hf_metrics_is_slack(m, w, e) && s->law[e] == m->law[e]) continue;
+        w->law[e] = HF_LAW_FORCE_DENSITY;
+        w->target[e] = s->q_N_per_m[e];
+    }
     if (!m->n_attachment) return;
     hf_coupling_forces(m, w);
     hf_schur_flex(m, w->attachment_force_N, w->displacement_m);
