@@ -393,12 +393,6 @@ static int scale_samples(const hf_tolerance_settings *t)
     return t->samples < SCALE_SAMPLES ? t->samples : SCALE_SAMPLES;
 }
 
-static void drop_tolerance(hf_summary *summary)
-{
-    free(summary->tolerance);
-    summary->tolerance = NULL;
-}
-
 static hf_status sum_up(job *j, hf_store *store, hf_summary *summary, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->problem->settings.tolerance;
@@ -412,7 +406,10 @@ static hf_status sum_up(job *j, hf_store *store, hf_summary *summary, hf_message
         j->montecarlo.tell_context = j;
         status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale, &to->scale_bound);
     }
-    if (status != HF_OK) drop_tolerance(summary); /* the summary then says nothing about samples */
+    if (status != HF_OK) { /* the summary then says nothing about samples */
+        free(to);
+        summary->tolerance = NULL;
+    }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "tolerance: out of memory");
     HF_TRY(status);
     warn_of_slack(j, to, messages);
