@@ -81,7 +81,8 @@ def ours():
              "changelog": markdown("CHANGELOG.md"), "explain": [
                  (p.relative_to(TOP), s) for p in [TOP / "src/manual/glossary.md"]
                  for s in of_markdown(p.read_text(encoding="utf-8"))], "messages": [
-                 (p.relative_to(TOP), s) for p in sorted(TOP.glob("src/**/*.c")) for s in of_messages(p)], "schema": markdown("src/case/keys.md")}
+                 (p.relative_to(TOP), s) for p in sorted(TOP.glob("src/**/*.c")) for s in of_messages(p)],
+             "schema": markdown("src/case/keys.md")}
     for name, _, lines in strings.texts():
         kind = {"include": "headers", "tools": "docstrings"}.get(name.parts[0])
         if name.suffix in (".html", ".js"):

@@ -37,7 +37,7 @@ typedef struct {
     bool has_import, has_optimize, has_surface; /* which sections the case has */
     bool has_tolerance;                         /* the case has a section tolerance */
     bool has_sweep; /* the case has a section sweep; its lines are not in `text`, and study.h reads its axes */
-#define HF_CASE_GENERATOR(section, type, KEYS)                                                                   \
+#define HF_CASE_GENERATOR(section, type, KEYS)                                                                         \
     bool has_##section;                                                                                                \
     type section;
     HF_GENERATORS(HF_CASE_GENERATOR)

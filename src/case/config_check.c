@@ -35,7 +35,7 @@ static bool one_section_makes_the_net(const hf_case *c, char what[WHAT_SIZE])
 hf_surface_settings hf_config_known_surface(const hf_case *c, const char **key)
 {
     hf_surface_settings known = {0};
-#define KNOW(section, type, KEYS)                                                                                \
+#define KNOW(section, type, KEYS)                                                                                      \
     if (c->has_##section) {                                                                                            \
         hf_scene_##section##_surface(&c->section, &known);                                                             \
         *key = "scene." #section ".focal_length_m";                                                                    \
@@ -50,7 +50,7 @@ static void check_generators(const hf_case *c, hf_config_faults *f)
 {
     char what[HF_GENERATE_FAULT_SIZE], path[128];
     const char *key;
-#define CHECK(section, type, KEYS)                                                                               \
+#define CHECK(section, type, KEYS)                                                                                     \
     if (c->has_##section && (key = hf_scene_##section##_fault(&c->section, what, sizeof what)) != NULL) {              \
         snprintf(path, sizeof path, "scene.%s.%s", #section, key);                                                     \
         hf_config_fault_of(f, path, what);                                                                             \

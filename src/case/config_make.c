@@ -11,7 +11,7 @@ hf_status hf_config_scene(const hf_case *settings, hf_scene *scene, hf_messages 
     if (settings->has_import)
         HF_TRY(hf_scene_import(settings->nodes_path, settings->cables_path, settings->EA_N, scene, messages));
     if (settings->has_import && *settings->facets_path) HF_TRY(hf_facet_import(settings->facets_path, scene, messages));
-#define MAKE(section, type, KEYS)                                                                                \
+#define MAKE(section, type, KEYS)                                                                                      \
     if (settings->has_##section) HF_TRY(hf_scene_##section(&settings->section, settings->EA_N, scene, messages));
     HF_GENERATORS(MAKE)
 #undef MAKE
