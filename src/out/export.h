@@ -1,7 +1,8 @@
 /* export - writes a stored result in the formats of other programs.
  *
  * The file export_table.c lists all exporters. The file export_NAME.c contains the exporter NAME: its row and its
- * function. A new exporter needs such a file and its name in HF_EXPORTERS. The option of `hifdm export`, its help and the call of the exporter follow from the row. */
+ * function. A new exporter needs such a file and its name in HF_EXPORTERS. The option of `hifdm export`, its help and
+ * the call of the exporter follow from the row. */
 #pragma once
 
 #include "base/file_out.h"
