@@ -22,6 +22,7 @@
 #include "base/elementary.h"
 #include "net/target_surface.h"
 #include "linalg/dense.h"
+#include "linalg/dot.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -47,7 +48,7 @@
 #define PIVOT_LEAST 1e-12     /* relative to the diagonal; a smaller pivot is rounding */
 #define DAMPING_LEAST 1e-12   /* relative to the diagonal */
 #define DAMPING_MOST 1e6
-#define SETTLED 1e-13 /* converged if fall_by of a Newton step is below this share of half the sum of squares */
+#define SETTLED 1e-13 /* converged if twice the decrease by a step is below this share of half the sum of squares */
 
 /* ---- the frame ---- */
 
@@ -145,7 +146,9 @@ static void bend_error(hf_surface_kind kind, double curvature, hf_fit_point *p)
                 (u2[a][b] - (u1[a] * D1[b] + u1[b] * D1[a] + u * D2[a][b] - 2 * u * D1[a] * D1[b] / D) / D) / D;
 }
 
-void hf_fit_derive(const hf_fit_frame *f, const double arm[3], double by[HF_FIT_N_PARAMETER][4])
+/* Computes the derivatives of the coordinates of a point by the found->n parameters. arm: vector from the shifted
+ * centre. */
+static void derive(const hf_fit_frame *f, const double arm[3], double by[HF_FIT_N_PARAMETER][4])
 {
     for (int k = 0; k < f->found->n; k++) {
         int shift = shift_of(f->found->quantity[k]), angle = hf_fit_angle_of(f->found->quantity[k]);
@@ -177,7 +180,7 @@ hf_fit_point hf_fit_point_take(const hf_fit_frame *f, int i)
     hf_fit_locate(f, i, p.arm, p.at);
     p.value = hf_fit_error(f->kind, 1, f->curvature_per_m, p.at, p.d);
     bend_error(f->kind, f->curvature_per_m, &p);
-    hf_fit_derive(f, p.arm, p.by);
+    derive(f, p.arm, p.by);
     return p;
 }
 
@@ -304,7 +307,7 @@ static int jacobian(const gsl_vector *v, void *context, gsl_matrix *J)
     for (int i = 0; i < p->n; i++) {
         double arm[3], at[3], s[2], u = height(&f, i, arm, at, s), w = 1 / (1 + s[0] * s[0] + s[1] * s[1]);
         double by[HF_FIT_N_PARAMETER][4];
-        hf_fit_derive(&f, arm, by);
+        derive(&f, arm, by);
         for (int k = 0; k < now.n; k++) { /* derivative of u w, with u = z - c x^2 - c y^2 and s = 2 c (x, y) */
             const double *d = by[k];
             double du = d[2], dw = 0;
@@ -384,15 +387,6 @@ static double look(const hf_fit_frame *f, const hf_fit_parameters *at, double *G
     return hf_fit_hessian(&here, G, H);
 }
 
-/* Returns twice the decrease of half the sum of squares that a Newton step predicts. */
-static double fall_by(int n, const double *G, const double *step)
-{
-    double fall = 0;
-    for (int k = 0; k < n; k++)
-        fall -= G[k] * step[k];
-    return fall;
-}
-
 /* Takes a step. A step along a curved valley ends on its side, above its start. A second step from there then leads to
  * the floor of the valley. Returns false and changes nothing if this is not lower either. */
 static bool take_step(const hf_fit_frame *f, hf_fit_parameters *at, const double *step, double damping, double *sum,
@@ -430,7 +424,8 @@ static bool descend(const hf_fit_frame *f, hf_fit_parameters *at, double across_
     for (int n = 0; n < DESCENT_STEPS_MAX; n++) {
         ++*iterations;
         if (fmax(fabs(at->value[HF_FIT_SHIFT_X]), fabs(at->value[HF_FIT_SHIFT_Y])) > across_most) return false;
-        if (find_step(at->n, H, G, 0, step) && fall_by(at->n, G, step) <= SETTLED * sum) {
+        /* -G . step is twice the decrease that a Newton step predicts */
+        if (find_step(at->n, H, G, 0, step) && -hf_dot((size_t)at->n, G, step) <= SETTLED * sum) {
             move(at, step);
             return true;
         }

@@ -77,10 +77,6 @@ hf_fit_frame hf_fit_frame_of(hf_surface_kind kind, double focal_length_m, int n,
 
 void hf_fit_locate(const hf_fit_frame *frame, int i, double arm[3], double at[3]);
 
-/* Computes the derivatives of the coordinates of a point by the found->n parameters. arm: vector from the shifted
- * centre. */
-void hf_fit_derive(const hf_fit_frame *frame, const double arm[3], double by[HF_FIT_N_PARAMETER][4]);
-
 double hf_fit_weight(const hf_fit_frame *frame, int i);
 hf_fit_point hf_fit_point_take(const hf_fit_frame *frame, int i);
 

@@ -10,6 +10,7 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "linalg/dense.h"
+#include "linalg/dot.h"
 #include "net/target_surface.h"
 
 #include <math.h>
@@ -167,12 +168,11 @@ bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *posit
     for (int i = 0; i < n; i++)
         weight += root_weight ? root_weight[i] * root_weight[i] : 1;
     for (int k = 0; k < STEPS_MAX; k++) { /* the matrix of the first pose serves all steps, because they are small */
-        double gain = 0, sum[N_PRODUCT];
+        double sum[N_PRODUCT];
         for (int j = 0; j < N; j++)
             step[j] = -last[j];
         hf_dense_solve(N, factor, pivot, 1, step);
-        for (int j = 0; j < N; j++)
-            gain -= last[j] * step[j];
+        double gain = -hf_dot(N, last, step);
         take_step(&p, step);
         if (fabs(gain) <= SETTLED * last[N]) {
             *half_path_rms_m = sqrt((last[N] - gain) / weight);
