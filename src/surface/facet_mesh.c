@@ -197,7 +197,6 @@ static void measure_at(const hf_facet_mesh *m, double u, double v, double g[3], 
         double near = m->corner[1][d] - m->corner[0][d], far = m->corner[2][d] - m->corner[3][d];
         du[d] = (1 - v) * near + v * far;
         dv[d] = (1 - u) * (m->corner[3][d] - m->corner[0][d]) + u * (m->corner[2][d] - m->corner[1][d]);
-        rise[d] = 0;
     }
     *base = (jet){0, hf_dot3(du, m->normal), hf_dot3(dv, m->normal)};
     for (int d = 0; d < 3; d++) {
@@ -363,17 +362,6 @@ typedef struct {
     bool has_shape; /* false: a cable cannot carry the pull of the mesh */
 } points;
 
-/* Computes a point p of a facet, lifted along the normal. Returns the projected area per du dv there, m2. The lift does
- * not change the area to first order. */
-static double point_at(const hf_facet_mesh *m, double u, double v, double lift_m, double p[3])
-{
-    double du[3], dv[3];
-    hf_facet_mesh_at(m, u, v, p, du, dv);
-    for (int d = 0; d < 3; d++)
-        p[d] += lift_m * m->normal[d];
-    return fabs(du[0] * dv[1] - du[1] * dv[0]);
-}
-
 /* Computes the points of all facets. A flat facet is a bilinear surface through four corners, or a triangle if the last
  * two are equal. The squared height error has degree 4 in each parameter, and the area has degree 1, so the rule is
  * exact for it. With a mesh, a cable may be unable to carry its pull. There is then no shape, and the lifts are NaN.
@@ -391,11 +379,14 @@ static hf_status put_points(double mesh_N_per_m, const hf_facets *f, const hf_fa
         hf_facet_mesh m;
         hf_facet_mesh_take_bent(f, i, shape->position_m, has_mesh ? q->sag_m : NULL, &m);
         for (int k = 0; k < n * n; k++, at++) {
-            double u = place[k % n], v = place[k / n], p[3], slope[2], lift_m = q->has_shape ? 0 : (double)NAN;
+            double u = place[k % n], v = place[k / n], lift_m = q->has_shape ? 0 : (double)NAN;
+            double p[3], du[3], dv[3], slope[2];
             if (has_mesh && q->has_shape) lift_m = hf_facet_mesh_lift_m(&m, u, v, slope);
-            double area_m2 = point_at(&m, u, v, lift_m, p) * weight[k % n] * weight[k / n];
+            hf_facet_mesh_at(&m, u, v, p, du, dv);
             for (int d = 0; d < 3; d++)
-                q->position_m[(size_t)d * (size_t)q->n + (size_t)at] = p[d];
+                q->position_m[(size_t)d * (size_t)q->n + (size_t)at] = p[d] + lift_m * m.normal[d];
+            /* the lift does not change the projected area to first order */
+            double area_m2 = fabs(du[0] * dv[1] - du[1] * dv[0]) * weight[k % n] * weight[k / n];
             q->root_m[at] = sqrt(area_m2);
             square += area_m2 * lift_m * lift_m;
             all += area_m2;
