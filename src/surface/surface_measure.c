@@ -24,15 +24,6 @@ static double note_loss(const hf_double_list *frequencies_Hz, double half_path_r
     return hf_surface_frequency_of_loss_Hz(half_path_rms_m, HF_RUZE_MOST_DB);
 }
 
-static void note_losses(const hf_surface_settings *s, hf_surface_measures *to)
-{
-    const hf_double_list *at = &s->frequencies_Hz;
-    to->ruze_limit_Hz = note_loss(at, to->half_path_rms_m, to->gain_loss_dB);
-    to->fit.ruze_limit_Hz = note_loss(at, to->fit.half_path_rms_m, to->fit_gain_loss_dB);
-    to->facet_ruze_limit_Hz = note_loss(at, to->facet_half_path_rms_m, to->facet_gain_loss_dB);
-    to->facet_fit_ruze_limit_Hz = note_loss(at, to->facet_fit_half_path_rms_m, to->facet_fit_gain_loss_dB);
-}
-
 /* ---- percentiles ---- */
 
 /* Returns a percentile of n sorted values, 0 <= part <= 1, interpolated linearly. */
@@ -46,19 +37,26 @@ static double percentile(const double *sorted, int n, double part)
 
 /* ---- a shape ---- */
 
-/* Collects the inner nodes [3][n] of the shape and their distances from the target positions. Sets the raw RMS
- * values of `to`. */
-static void collect(const hf_surface_settings *s, const hf_model *m, const double *position_m, double *inner_m,
-                    double *deviation_m, hf_surface_measures *to)
+/* Copies the inner nodes of the shape to inner_m [3][n]. */
+static void take_nodes(const hf_model *m, const double *position_m, double *inner_m)
+{
+    size_t n = (size_t)m->n_inner_node;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t k = 0; k < n; k++)
+            inner_m[c * n + k] = position_m[(int)c * m->n_node + m->inner_row[k]];
+}
+
+/* Sets the distances of the inner nodes inner_m [3][n] from their target positions, and the raw RMS values of `to`. */
+static void measure_errors(const hf_surface_settings *s, const hf_model *m, const double *inner_m, double *deviation_m,
+                           hf_surface_measures *to)
 {
     int n = m->n_inner_node;
     double curvature = 1 / (4 * s->focal_length_m), up = 0, normal = 0, half_path = 0;
     for (int k = 0; k < n; k++) {
         double square = 0, d = 0, p[3], slope[2];
         for (int c = 0; c < 3; c++) {
-            int at = c * m->n_node + m->inner_row[k];
-            inner_m[c * n + k] = p[c] = position_m[at];
-            d = position_m[at] - m->position_m[at];
+            p[c] = inner_m[c * n + k];
+            d = p[c] - m->position_m[c * m->n_node + m->inner_row[k]];
             square += d * d;
         }
         deviation_m[k] = sqrt(square);
@@ -73,16 +71,6 @@ static void collect(const hf_surface_settings *s, const hf_model *m, const doubl
     to->half_path_rms_m = sqrt(half_path / n);
 }
 
-static hf_status measure_facets(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
-                                const double *position_m, const double *tension_N, hf_surface_measures *to)
-{
-    hf_facet_shape shape;
-    hf_status status = hf_facet_shape_take(m, position_m, tension_N, &shape);
-    if (status == HF_OK) status = hf_facet_measure(s, facets, &shape, to);
-    hf_arena_free_block(shape.block);
-    return status;
-}
-
 hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                              const double *position_m, const double *tension_N, hf_surface_measures *measures)
 {
@@ -91,8 +79,10 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
     *measures = (hf_surface_measures){0};
     double *inner_m, *deviation_m;
     HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(inner_m, 3 * n), HF_ARRAY(deviation_m, n)));
+    hf_facet_shape shape = {0};
     hf_surface_measures all = {.is_measured = true};
-    collect(s, m, position_m, inner_m, deviation_m, &all);
+    take_nodes(m, position_m, inner_m);
+    measure_errors(s, m, inner_m, deviation_m, &all);
     qsort(deviation_m, n, sizeof *deviation_m, hf_compare_doubles);
     all.deviation_p50_m = percentile(deviation_m, (int)n, 0.50);
     all.deviation_p90_m = percentile(deviation_m, (int)n, 0.90);
@@ -102,25 +92,20 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
     all.faceting_rms_m =
         s->strip_width_m > 0 ? s->strip_width_m * s->strip_width_m / (24 * sqrt(5) * s->focal_length_m) : (double)NAN;
     hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, inner_m, NULL, &all.fit);
-    if (status == HF_OK) status = measure_facets(s, facets, m, position_m, tension_N, &all);
-    note_losses(s, &all);
+    if (status == HF_OK) status = hf_facet_shape_take(m, position_m, tension_N, &shape);
+    if (status == HF_OK) status = hf_facet_measure(s, facets, &shape, &all);
+    const hf_double_list *at = &s->frequencies_Hz;
+    all.ruze_limit_Hz = note_loss(at, all.half_path_rms_m, all.gain_loss_dB);
+    all.fit.ruze_limit_Hz = note_loss(at, all.fit.half_path_rms_m, all.fit_gain_loss_dB);
+    all.facet_ruze_limit_Hz = note_loss(at, all.facet_half_path_rms_m, all.facet_gain_loss_dB);
+    all.facet_fit_ruze_limit_Hz = note_loss(at, all.facet_fit_half_path_rms_m, all.facet_fit_gain_loss_dB);
+    hf_arena_free_block(shape.block);
     hf_arena_free_block(block);
     if (status == HF_OK) *measures = all;
     return status;
 }
 
 /* ---- a shape near another one ---- */
-
-/* Copies the inner nodes to inner_m [3][n], in new memory of the arena. */
-static hf_status take_nodes(const hf_model *m, const double *position_m, void **block, double **inner_m)
-{
-    size_t n = (size_t)m->n_inner_node;
-    HF_TRY(HF_ARENA_ARRAYS(block, HF_ARRAY(*inner_m, 3 * n)));
-    for (size_t c = 0; c < 3; c++)
-        for (size_t k = 0; k < n; k++)
-            (*inner_m)[c * n + k] = position_m[(int)c * m->n_node + m->inner_row[k]];
-    return HF_OK;
-}
 
 hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                                  const double *position_m, const double *tension_N, hf_surface_design *design)
@@ -131,7 +116,8 @@ hf_status hf_surface_design_make(const hf_surface_settings *s, const hf_facets *
     hf_fit_parameters parameters;
     double *inner_m;
     *design = (hf_surface_design){0};
-    HF_TRY(take_nodes(m, position_m, &block, &inner_m));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(inner_m, 3 * (size_t)m->n_inner_node)));
+    take_nodes(m, position_m, inner_m);
     hf_status status =
         hf_surface_fit_find(s->kind, s->focal_length_m, m->n_inner_node, inner_m, NULL, &fit, &parameters);
     hf_arena_free_block(block);
@@ -153,7 +139,8 @@ static hf_status measure_nodes(const hf_surface_design *design, const hf_surface
     void *block;
     hf_surface_fit fit;
     double *inner_m, sum = 0, curvature = 1 / (4 * s->focal_length_m);
-    HF_TRY(take_nodes(m, position_m, &block, &inner_m));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(inner_m, 3 * (size_t)n)));
+    take_nodes(m, position_m, inner_m);
     for (int k = 0; k < n; k++) {
         double p[3] = {inner_m[k], inner_m[n + k], inner_m[2 * (size_t)n + (size_t)k]}, slope[2];
         double above = hf_target_surface_height_above(s->kind, curvature, p, slope);
