@@ -23,24 +23,6 @@ static void find_spools(const hf_scene *s, hf_built_errors *e)
             e->spool[s->set_cable[i]] = k;
 }
 
-static void count_errors(const hf_scene *s, hf_built_errors *e)
-{
-    const int count[HF_ERROR_N_KIND] = {s->n_cable, s->n_cable,       e->n_spool, s->n_cable,
-                                        e->n_spool, 3 * e->n_support, 1,          e->n_truss};
-    for (int k = 0; k < HF_ERROR_N_KIND; k++)
-        e->first[k + 1] = e->first[k] + (e->sigma[k] > 0 ? count[k] : 0);
-}
-
-static void heat_truss_parts(const hf_tolerance_settings *t, const double *move_m_per_K, hf_built_errors *e)
-{
-    int n = 3 * e->linear->built->model.n_attachment;
-    for (int k = 0; k < e->n_truss; k++) {
-        e->part[k] = t->truss[k].part;
-        for (int i = 0; i < n; i++)
-            e->truss_move_m[k * n + i] = t->truss[k].sigma_temperature_K * move_m_per_K[k * n + i];
-    }
-}
-
 hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_settings *t, const hf_built_heat *heat,
                                hf_built_errors *e)
 {
@@ -63,8 +45,15 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
     for (int i = 0; i < s->n_node; i++)
         if (s->role[i] == HF_ROLE_SUPPORT) e->support[e->n_support++] = i;
     if (heat->expansion_per_K) memcpy(e->expansion_per_K, heat->expansion_per_K, (size_t)s->n_cable * sizeof(double));
-    heat_truss_parts(t, heat->truss_move_m_per_K, e);
-    count_errors(s, e);
+    for (int k = 0, n = 3 * m->n_attachment; k < e->n_truss; k++) {
+        e->part[k] = t->truss[k].part;
+        for (int i = 0; i < n; i++)
+            e->truss_move_m[k * n + i] = t->truss[k].sigma_temperature_K * heat->truss_move_m_per_K[k * n + i];
+    }
+    const int count[HF_ERROR_N_KIND] = {s->n_cable, s->n_cable,       e->n_spool, s->n_cable,
+                                        e->n_spool, 3 * e->n_support, 1,          e->n_truss};
+    for (int k = 0; k < HF_ERROR_N_KIND; k++)
+        e->first[k + 1] = e->first[k] + (e->sigma[k] > 0 ? count[k] : 0);
     return HF_OK;
 }
 
