@@ -17,12 +17,6 @@ static double effect_of(const hf_built_errors *errors, hf_error_kind kind, int i
     return is_length ? l0 : -l0 * b->tension_N[i] / b->scene.EA_N[i];
 }
 
-/* Returns the name of a spool: that of its set, or the word of its group. */
-static const char *set_of(const hf_scene *s, int spool)
-{
-    return spool < s->n_set ? s->set_name[spool] : hf_group_word[spool - s->n_set];
-}
-
 static int count_cables(const hf_built_errors *errors, int spool)
 {
     int n = 0;
@@ -49,7 +43,8 @@ static void add_number(const hf_built_errors *errors, hf_error_kind kind, int sp
             column[i] = length;
     }
     if (n == 1) return;
-    p->number[p->n_shared++] = (hf_prior_number){kind, spool < 0 ? NULL : set_of(s, spool), errors->sigma[kind]};
+    const char *name = spool < 0 ? NULL : spool < s->n_set ? s->set_name[spool] : hf_group_word[spool - s->n_set];
+    p->number[p->n_shared++] = (hf_prior_number){kind, name, errors->sigma[kind]};
 }
 
 static void fill_prior(const hf_built_errors *errors, hf_prior *p)
