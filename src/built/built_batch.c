@@ -58,22 +58,7 @@ static hf_status make_room(const hf_built_batch *batch, batch_room *room)
                            HF_ARRAY(room->support_displacement_m, 3 * (size_t)m->n_node * HF_LANES));
 }
 
-static void free_room(batch_room *room)
-{
-    hf_workspace_free(&room->work);
-    hf_near_lanes_free(&room->near);
-    hf_arena_free_block(room->block);
-}
-
 /* ---- the batch ---- */
-
-/* Makes the first room and factors the shared matrix, which needs the workspace of that room. */
-static hf_status share(hf_built_batch *batch)
-{
-    HF_TRY(hf_workspace_create(&batch->built->model, &batch->room[0].work));
-    HF_TRY(hf_built_batch_renew(batch));
-    return make_room(batch, &batch->room[0]);
-}
 
 hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_batch **batch)
 {
@@ -82,7 +67,11 @@ hf_status hf_built_batch_create(const hf_built *built, int n_thread, hf_built_ba
     if (n_thread <= 0) n_thread = hf_parallel_cores();
     HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(*batch, 1), HF_ARRAY(room, n_thread)));
     **batch = (hf_built_batch){.built = built, .n_thread = n_thread, .room = room};
-    if (share(*batch) == HF_OK) return HF_OK;
+    /* The first room: the shared matrix needs its workspace. */
+    hf_status status = hf_workspace_create(&built->model, &room[0].work);
+    if (status == HF_OK) status = hf_built_batch_renew(*batch);
+    if (status == HF_OK) status = make_room(*batch, &room[0]);
+    if (status == HF_OK) return HF_OK;
     hf_built_batch_free(*batch);
     *batch = NULL;
     return HF_NO_MEMORY;
@@ -101,8 +90,11 @@ hf_status hf_built_batch_renew(hf_built_batch *batch)
 void hf_built_batch_free(hf_built_batch *batch)
 {
     if (!batch) return;
-    for (int i = 0; i < batch->n_thread; i++)
-        free_room(&batch->room[i]);
+    for (int i = 0; i < batch->n_thread; i++) {
+        hf_workspace_free(&batch->room[i].work);
+        hf_near_lanes_free(&batch->room[i].near);
+        hf_arena_free_block(batch->room[i].block);
+    }
     hf_near_free(&batch->near);
     hf_arena_free_block(batch);
 }

@@ -19,15 +19,6 @@
 
 /* ---- making ---- */
 
-/* Puts the nominal net into the workspace. */
-static void take_shape(const hf_built *b, hf_workspace *w)
-{
-    const hf_model *m = &b->model;
-    hf_form_prepare(m, w);
-    memcpy(w->position_m, b->position_m, 3 * (size_t)m->n_node * sizeof(double));
-    memcpy(w->tension_N, b->tension_N, (size_t)m->n_cable * sizeof(double));
-}
-
 /* Sets all arrays of cable e from the shape in the workspace. */
 static void look_at_cable(hf_built_linear *l, int e)
 {
@@ -42,27 +33,20 @@ static void look_at_cable(hf_built_linear *l, int e)
     l->cut_N_per_m[e] = -k * length / l0;
 }
 
-/* Sets the springs of loose nodes, which would make the Hessian singular. Returns whether there are any. */
-static bool spring_loose(const hf_model *m, hf_workspace *w)
-{
-    bool has_loose = false;
-    for (int i = 0; i < m->n_free; i++) {
-        w->spring_N_per_m[i] = w->loose[i] ? hf_joint_loose_spring_N_per_m(m) : 0;
-        has_loose |= w->loose[i];
-    }
-    return has_loose;
-}
-
 /* Factors the Hessian at the shape in the workspace. Returns HF_OK or HF_SINGULAR. */
 static hf_status factor_shape(hf_built_linear *l)
 {
     const hf_model *m = &l->built->model;
+    const double *spring = NULL;
     double condition;
     l->is_factored = false;
     l->n_factor++;
     for (int e = 0; e < m->n_cable; e++)
         look_at_cable(l, e);
-    const double *spring = spring_loose(m, &l->work) ? l->work.spring_N_per_m : NULL;
+    for (int i = 0; i < m->n_free; i++) { /* loose nodes would make the Hessian singular */
+        l->work.spring_N_per_m[i] = l->work.loose[i] ? hf_joint_loose_spring_N_per_m(m) : 0;
+        if (l->work.loose[i]) spring = l->work.spring_N_per_m;
+    }
     HF_TRY(hf_newton_matrix_factor_blocks(m, &l->work, hf_newton_matrix_block, spring, NULL, &condition));
     if (isinf(condition)) return HF_SINGULAR;
     if (m->n_attachment) HF_TRY(hf_schur_factor(m, &l->work, hf_newton_matrix_block, &l->schur));
@@ -79,7 +63,9 @@ hf_status hf_built_linear_make(const hf_built *b, hf_built_linear *l)
                            HF_ARRAY(l->cut_N_per_m, n), HF_ARRAY(l->ratio_N, n), HF_ARRAY(l->block_N_per_m, 9 * n)));
     HF_TRY(hf_workspace_create(m, &l->work));
     if (m->n_attachment) HF_TRY(hf_schur_create(m, &l->schur));
-    take_shape(b, &l->work);
+    hf_form_prepare(m, &l->work);
+    memcpy(l->work.position_m, b->position_m, 3 * (size_t)m->n_node * sizeof(double));
+    memcpy(l->work.tension_N, b->tension_N, n * sizeof(double));
     return factor_shape(l);
 }
 
