@@ -43,17 +43,6 @@ static void rest_supports(const hf_model *m, const hf_workspace *w, hf_scene *s)
             s->position_m[3 * m->node_of_row[m->attachment_row[k]] + c] -= w->displacement_m[3 * k + c];
 }
 
-/* Sets the cut length (M32) and the design tension of each cable. */
-static void cut_cables(const hf_model *m, const hf_workspace *w, hf_built *b)
-{
-    for (int e = 0; e < b->scene.n_cable; e++) {
-        hf_law_cable cable = hf_workspace_cable(m, w, e);
-        cable.EA_N = b->scene.EA_N[e];
-        b->scene.target[e] = hf_law_cut_m(cable, w->length_m[e], w->tension_N[e], hf_metrics_is_slack(m, w, e));
-        b->tension_N[e] = w->tension_N[e];
-    }
-}
-
 /* Puts the supports on the same truss as in the design's model. */
 static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messages)
 {
@@ -68,11 +57,16 @@ static hf_status attach_truss(const hf_model *m, hf_built *b, hf_messages *messa
     return status;
 }
 
-/* Copies supports, cut lengths and positions from the shape of the design. */
+/* Takes supports, cut lengths (M32), tensions and positions from the shape of the design. */
 static void take_design(const hf_model *m, const hf_workspace *w, hf_built *b)
 {
     rest_supports(m, w, &b->scene);
-    cut_cables(m, w, b);
+    for (int e = 0; e < b->scene.n_cable; e++) {
+        hf_law_cable cable = hf_workspace_cable(m, w, e);
+        cable.EA_N = b->scene.EA_N[e];
+        b->scene.target[e] = hf_law_cut_m(cable, w->length_m[e], w->tension_N[e], hf_metrics_is_slack(m, w, e));
+        b->tension_N[e] = w->tension_N[e];
+    }
     memcpy(b->position_m, w->position_m, 3 * (size_t)m->n_node * sizeof(double));
 }
 
