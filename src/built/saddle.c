@@ -308,17 +308,6 @@ static bool refine_iteratively(const hf_saddle_dual *d, int n, double *band)
     return is_found;
 }
 
-/* Solves n right-hand sides band [n][6 n_free] in place. Returns false when refinement fails for one of them. No
- * solution depends on the others. */
-static bool solve_dual(const hf_saddle_dual *d, int n, double *band)
-{
-    for (int first = 0; first < n; first += HF_SADDLE_PANEL) {
-        int n_now = n - first < HF_SADDLE_PANEL ? n - first : HF_SADDLE_PANEL;
-        if (!refine_iteratively(d, n_now, band + 2 * (ptrdiff_t)first * d->n)) return false;
-    }
-    return true;
-}
-
 /* Factors the matrix. Returns false when it has no factor, or when refinement does not solve a probe; another method is
  * then needed. */
 static bool factor_dual(hf_saddle *s)
@@ -477,12 +466,15 @@ static void fill_border(hf_saddle *s)
     }
 }
 
-/* Solves the band in place for n right-hand sides b [n][n_band]. Returns HF_OK; or HF_SINGULAR when rounding prevents a
- * solution. */
+/* Solves the band in place for n right-hand sides b [n][n_band]. No solution depends on the others. Returns HF_OK; or
+ * HF_SINGULAR when rounding prevents a solution. */
 static hf_status solve_band(const hf_saddle *s, int n, double *b)
 {
-    if (s->is_dual) return solve_dual(&s->dual, n, b) ? HF_OK : HF_SINGULAR;
-    hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
+    for (int first = 0; s->is_dual && first < n; first += HF_SADDLE_PANEL) {
+        int n_now = n - first < HF_SADDLE_PANEL ? n - first : HF_SADDLE_PANEL;
+        if (!refine_iteratively(&s->dual, n_now, b + (ptrdiff_t)first * s->n_band)) return HF_SINGULAR;
+    }
+    if (!s->is_dual) hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
     return HF_OK;
 }
 
@@ -503,17 +495,6 @@ static hf_status factor_border(hf_saddle *s)
     return hf_dense_factor(s->n_border, s->dense, s->dense_pivot) == 0 ? HF_OK : HF_SINGULAR;
 }
 
-/* Chooses units in which the entries of the matrix are about 1. */
-static void choose_units(hf_saddle *s)
-{
-    const hf_built_linear *l = s->linear;
-    const hf_model *m = &l->built->model;
-    double stiffest = hf_max_magnitude((size_t)m->n_cable, l->stiffness_N_per_m);
-    s->force_m_per_N = 1 / (stiffest * s->size_m);
-    for (int i = 0; i < s->n_attached * s->n_attached; i++)
-        s->flex[i] = stiffest * m->flexibility_m_per_N[i];
-}
-
 static void clear_border(hf_saddle *s)
 {
     memset(s->column, 0, (size_t)s->n_border * (size_t)s->n_band * sizeof *s->column);
@@ -526,7 +507,11 @@ static void clear_border(hf_saddle *s)
 static hf_status factor_parts(hf_saddle *s)
 {
     const hf_model *m = &s->linear->built->model;
-    choose_units(s);
+    /* units in which the entries of the matrix are about 1 */
+    double stiffest = hf_max_magnitude((size_t)m->n_cable, s->linear->stiffness_N_per_m);
+    s->force_m_per_N = 1 / (stiffest * s->size_m);
+    for (int i = 0; i < s->n_attached * s->n_attached; i++)
+        s->flex[i] = stiffest * m->flexibility_m_per_N[i];
     clear_border(s);
     s->is_dual = may_be_dual(s) && factor_dual(s);
     if (s->is_dual && factor_border(s) == HF_OK) return HF_OK;
