@@ -288,8 +288,8 @@ static int unit_of(const hf_csv *t, const char *head, const char *name)
 
 static int find_name(const hf_csv *t, const char *head, const char *const *names, int n_name)
 {
-    for (int k = 0; k < n_name; k++)
-        if (!strcmp(names[k], head)) return k;
+    int named = hf_text_index(head, names, n_name);
+    if (named >= 0) return named;
     for (int k = 0; k < n_name; k++)
         if (unit_of(t, head, names[k]) >= 0) return k;
     return -1;
@@ -297,9 +297,7 @@ static int find_name(const hf_csv *t, const char *head, const char *const *names
 
 int hf_csv_column(const hf_csv *t, const char *name)
 {
-    for (int c = 0; c < t->n_column; c++)
-        if (!strcmp(name, t->header[c])) return c;
-    return -1;
+    return hf_text_index(name, (const char *const *)t->header, t->n_column);
 }
 
 /* Returns true if the first line contains at least one of the names. Otherwise it is no header. */
@@ -490,8 +488,7 @@ int hf_csv_find_known(const hf_csv *t, const char *id)
 /* Returns true if this unknown name was reported before. Records it otherwise, while there is room. */
 static bool is_reported(hf_csv *t, const char *name)
 {
-    for (int k = 0; k < t->n_unknown; k++)
-        if (!strcmp(t->unknown[k], name)) return true;
+    if (hf_text_index(name, t->unknown, t->n_unknown) >= 0) return true;
     if (t->n_unknown < HF_CSV_UNKNOWN_MAX) t->unknown[t->n_unknown++] = name;
     return false;
 }

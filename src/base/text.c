@@ -257,6 +257,13 @@ static int edit_distance(const char *a, const char *b)
     return row[n_b];
 }
 
+int hf_text_index(const char *word, const char *const *words, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!strcmp(word, words[i])) return i;
+    return -1;
+}
+
 /* Returns true if the name is this word with a unit, such as EA_N for EA. */
 static bool is_with_unit(const char *name, const char *word)
 {

@@ -59,6 +59,9 @@ const char *hf_text_first_error(const char *lines, const char *otherwise);
 #define HF_TEXT_NESTING_MAX 100
 int hf_text_too_deep(const char *text);
 
+/* Returns the index of a word among n words, or -1. */
+int hf_text_index(const char *word, const char *const *words, int n);
+
 /* Returns the candidate with the smallest edit distance to `word`. Returns NULL if none is near enough to be
  * a typing error. */
 const char *hf_text_nearest(const char *word, const char *const *candidates, int n_candidate);

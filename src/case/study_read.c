@@ -461,14 +461,6 @@ static void read_title(reader *r, const yaml_node_t *node)
         fault(r, node->start_mark, "", "title is longer than %zu bytes", size - 1);
 }
 
-/* Returns the index of a name, or -1. */
-static int name_of(const char *word, const char *const *names, int n)
-{
-    for (int i = 0; i < n; i++)
-        if (!strcmp(word, names[i])) return i;
-    return -1;
-}
-
 static const char *const root_name[] = {"base", "title", "sweep"};
 enum { N_ROOT_NAME = sizeof root_name / sizeof *root_name };
 
@@ -477,7 +469,7 @@ static void find_names(yaml_document_t *document, const yaml_node_t *root, const
 {
     if (!root || root->type != YAML_MAPPING_NODE) return;
     for (yaml_node_pair_t *p = root->data.mapping.pairs.start; p < root->data.mapping.pairs.top; p++) {
-        int k = name_of(hf_config_text(yaml_document_get_node(document, p->key)), root_name, N_ROOT_NAME);
+        int k = hf_text_index(hf_config_text(yaml_document_get_node(document, p->key)), root_name, N_ROOT_NAME);
         if (k >= 0) found[k] = yaml_document_get_node(document, p->value);
     }
 }
@@ -495,7 +487,7 @@ static void read_root(reader *r, const yaml_node_t *root)
     for (yaml_node_pair_t *p = root->data.mapping.pairs.start; base && p < root->data.mapping.pairs.top; p++) {
         const yaml_node_t *key = node_at(r, p->key);
         if (is_repeated(r, root, p, "")) continue;
-        if (name_of(hf_config_text(key), root_name, N_ROOT_NAME) < 0)
+        if (hf_text_index(hf_config_text(key), root_name, N_ROOT_NAME) < 0)
             fault_unknown(r, key->start_mark, "", hf_config_text(key), root_name, N_ROOT_NAME);
     }
     snprintf(r->study->base, sizeof r->study->base, "%s", r->study->path);

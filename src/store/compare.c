@@ -9,6 +9,7 @@
  * The comparison of a data set ends at its first difference. Sections: one value, one data set, both files. */
 #include "store/compare.h"
 
+#include "base/text.h"
 #include "store/hdf5.h"
 #include "store/renamed.h"
 
@@ -251,13 +252,6 @@ static void note_found(comparing *q, const char *path)
         q->n_found++;
 }
 
-static bool is_found(const comparing *q, const char *path)
-{
-    for (int i = 0; i < q->n_found; i++)
-        if (!strcmp(q->found[i], path)) return true;
-    return false;
-}
-
 static void visit_first(void *context, const char *path, hid_t object, H5I_type_t type)
 {
     comparing *q = context;
@@ -277,7 +271,8 @@ static void visit_second(void *context, const char *path, hid_t object, H5I_type
 {
     comparing *q = context;
     (void)object;
-    if (type != H5I_DATASET || is_second(q, path) || is_found(q, path)) return;
+    if (type != H5I_DATASET || is_second(q, path)) return;
+    if (hf_text_index(path, (const char *const *)q->found, q->n_found) >= 0) return;
     bool is_old = q->second->alias && !q->first->alias; /* `first` has links of these names */
     if (!is_old && has_data_set(q->first, path)) return;
     q->c->n_data_set++;
