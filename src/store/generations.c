@@ -344,14 +344,6 @@ static bool are_words(const generation_row *row, int n)
     return true;
 }
 
-/* Returns true if the value is within its bounds. The slack allows for other last bits of the bounds on another
- * machine. */
-static bool is_within(double value, double low, double high)
-{
-    double slack = 1e-6 * (fabs(low) + fabs(high));
-    return value >= low - slack && value <= high + slack;
-}
-
 bool hf_generations_are_sound(const hf_population *p)
 {
     generation_row row[HF_GENERATIONS_PIECES];
@@ -365,9 +357,11 @@ bool hf_generations_are_sound(const hf_population *p)
             if (r->status == HF_OK && !isfinite(r->objective[k])) return false;
         for (int k = 0; k < 2; k++)
             if (p->parent[2 * i + k] < -1 || p->parent[2 * i + k] >= p->n_individual) return false;
-        for (int k = 0; k < p->n_variable; k++)
-            if (!is_within(p->design[(size_t)i * (size_t)p->n_variable + (size_t)k], p->lower[k], p->upper[k]))
-                return false;
+        for (int k = 0; k < p->n_variable; k++) {
+            double value = p->design[(size_t)i * (size_t)p->n_variable + (size_t)k];
+            double slack = 1e-6 * (fabs(p->lower[k]) + fabs(p->upper[k])); /* last bits of another machine */
+            if (!(value >= p->lower[k] - slack && value <= p->upper[k] + slack)) return false;
+        }
     }
     return true;
 }
@@ -380,24 +374,18 @@ static bool is_stored(const hf_generations *g, int i)
     return i < HF_ROW_OBJECTIVE + g->n_objective || i >= HF_ROW_OBJECTIVE + HF_FRONT_OBJECTIVES_MAX;
 }
 
-/* Chooses as many rows per chunk as fit, but no more than are written at a time. A row larger than CHUNK_BYTES is
- * divided along its other dimensions. */
-static void choose_chunk(const hf_hdf5_array *a, size_t row_bytes, hsize_t rows, hsize_t chunk[3])
+/* Makes a data set with as many rows per chunk as fit, but no more than are written at a time. A row larger than
+ * CHUNK_BYTES is divided along its other dimensions. */
+static void make_array(hf_hdf5 *io, hid_t group, const generation_row *row, size_t row_bytes, int rows)
 {
-    size_t fit = row_bytes ? CHUNK_BYTES / row_bytes : rows;
+    const hf_hdf5_array *a = &row->array;
+    hsize_t chunk[3] = {(hsize_t)how_many(row_bytes ? CHUNK_BYTES / row_bytes : (size_t)rows, rows)};
     hsize_t left = CHUNK_MAX / hf_hdf5_kind_bytes(a->kind);
-    chunk[0] = fit < 1 ? 1 : fit < rows ? fit : rows;
     for (int i = a->rank - 1; i > 0; i--) {
         chunk[i] = a->dims[i] < 1 ? 1 : a->dims[i] < left ? a->dims[i] : left;
         left = left / chunk[i] ? left / chunk[i] : 1;
     }
-}
-
-static void make_array(hf_hdf5 *io, hid_t group, const generation_row *row, size_t row_bytes, int rows)
-{
-    hsize_t chunk[3];
-    choose_chunk(&row->array, row_bytes, (hsize_t)rows, chunk);
-    hf_hdf5_close(io, hf_hdf5_make_array(io, group, &row->array, chunk, false));
+    hf_hdf5_close(io, hf_hdf5_make_array(io, group, a, chunk, false));
 }
 
 static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, generation_row row[HF_GENERATIONS_PIECES])
