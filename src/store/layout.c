@@ -187,12 +187,6 @@ void hf_layout_pass_fields(hf_hdf5 *io, bool writes, hid_t group, const hf_layou
 
 /* ---- members ---- */
 
-/* Returns true if the file is of another version that did not have this attribute yet. */
-static bool is_newer_than_file(hf_hdf5 *io, const char *object, const char *name)
-{
-    return *io->made_by && hf_hdf5_has(io, io->file, object) && !hf_hdf5_has_attribute(io, io->file, object, name);
-}
-
 void hf_layout_pass_members(hf_hdf5 *io, bool writes, const char *object, const hf_result_field *field, int n,
                             void *owner)
 {
@@ -207,7 +201,8 @@ void hf_layout_pass_members(hf_hdf5 *io, bool writes, const char *object, const 
             hf_hdf5_put_chars(io, io->file, object, f->name, member);
         } else if (writes) {
             hf_hdf5_put(io, io->file, object, f->name, kind, 0, stored);
-        } else if (is_newer_than_file(io, object, f->name)) {
+        } else if (*io->made_by && hf_hdf5_has(io, io->file, object) &&
+                   !hf_hdf5_has_attribute(io, io->file, object, f->name)) { /* another version did not have it yet */
             memset(member, 0, f->size);
             if (kind == HF_KIND_REAL) *(double *)member = (double)NAN;
         } else {

@@ -348,16 +348,6 @@ const hf_result_field hf_layout_load_case[HF_LAYOUT_N_LOAD_CASE] = {HF_RESULT_LI
 static const hf_layout_field load_case_names[] = {
     HF_LAYOUT_MEMBER(hf_load_case_summary, "name", name, CHARS, "", "load cases of the as-built net")};
 
-static void pass_load_case(hf_hdf5 *io, bool writes, int n_frequency, hf_load_case_summary *s)
-{
-    char path[HF_LAYOUT_LOAD_CASE_SIZE], surface[HF_LAYOUT_LOAD_CASE_SIZE + 16];
-    snprintf(path, sizeof path, "/load_cases/%s", s->name);
-    snprintf(surface, sizeof surface, "%s/surface", path);
-    if (writes) hf_hdf5_close(io, hf_hdf5_make_group(io, path));
-    hf_layout_pass_members(io, writes, path, hf_layout_load_case, HF_LAYOUT_N_LOAD_CASE, s);
-    pass_measures(io, writes, surface, n_frequency, &s->surface);
-}
-
 static void pass_load_cases(hf_hdf5 *io, bool writes, hf_summary *s)
 {
     int n = s->n_load_case;
@@ -372,11 +362,17 @@ static void pass_load_cases(hf_hdf5 *io, bool writes, hf_summary *s)
     if (io->status == HF_OK) s->n_load_case = n;
     for (int k = 0; k < n && io->status == HF_OK; k++) {
         hf_load_case_summary *of = &s->load_case[k];
+        char path[HF_LAYOUT_LOAD_CASE_SIZE], surface[HF_LAYOUT_LOAD_CASE_SIZE + 16];
         of->name[HF_SET_NAME_SIZE - 1] = '\0';
-        if (!is_name_right(of->name))
+        if (!is_name_right(of->name)) {
             hf_hdf5_damaged(io, io->file, "/load_cases/name", "does not name load cases");
-        else
-            pass_load_case(io, writes, s->surface.frequencies_Hz.n, of);
+            return;
+        }
+        snprintf(path, sizeof path, "/load_cases/%s", of->name);
+        snprintf(surface, sizeof surface, "%s/surface", path);
+        if (writes) hf_hdf5_close(io, hf_hdf5_make_group(io, path));
+        hf_layout_pass_members(io, writes, path, hf_layout_load_case, HF_LAYOUT_N_LOAD_CASE, of);
+        pass_measures(io, writes, surface, s->surface.frequencies_Hz.n, &of->surface);
     }
 }
 
