@@ -55,12 +55,6 @@ static void set_number(void *room, int i, const hf_hdf5_kind *kind, const char *
 
 /* ---- inputs ---- */
 
-static const char *value_of(const merger *m, int i, int axis)
-{
-    const hf_study *s = m->study;
-    return strchr(s->axis[axis].canonical[s->value[(size_t)i * (size_t)s->n_axis + (size_t)axis]], '=') + 1;
-}
-
 /* Returns true if all values of an amount are numbers, none a percentage such as 30 %. */
 static bool has_numbers(const hf_study_axis *axis)
 {
@@ -73,6 +67,7 @@ static bool has_numbers(const hf_study_axis *axis)
 static void write_axis(merger *m, hid_t group, int i_axis)
 {
     const hf_study_axis *axis = &m->study->axis[i_axis];
+    const int *value = m->study->value + i_axis; /* of the points, n_axis apart */
     const hf_field *f = axis->key.field;
     const hf_list *list = axis->key.list;
     const char *help = list ? hf_config_help(list->path, f->path) : hf_config_help(f->path, NULL);
@@ -82,7 +77,7 @@ static void write_axis(merger *m, hid_t group, int i_axis)
                                : type == HF_FIELD_INT || type == HF_FIELD_INT_PAIR ? HF_KIND_INT
                                                                                    : NULL;
     for (int i = 0; i < m->points->n_point; i++) {
-        const char *text = value_of(m, i, i_axis);
+        const char *text = strchr(axis->canonical[value[(ptrdiff_t)i * m->study->n_axis]], '=') + 1;
         if (!kind)
             ((const char **)m->room)[i] = text;
         else if (type == HF_FIELD_INT_PAIR)
@@ -151,24 +146,16 @@ static void write_value(merger *m, hid_t group, int list, const char *value)
                                                   : "of the surface");
 }
 
-/* Makes the group, and before it the group that contains it. */
-static hid_t make_nested_group(merger *m, const char *path)
-{
-    char outer[32];
-    snprintf(outer, sizeof outer, "%.*s", hf_path_prefix_length(path) - 1, path);
-    hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, outer));
-    return hf_hdf5_make_group(&m->io, path);
-}
-
 /* Writes one column for each name that any point has in this list. Points may have different names, because sets and
  * figures of objectives and frequencies can be axes. */
 static void write_list(merger *m, int list)
 {
-    char(*done)[HF_OBJECTIVE_NAME_SIZE] = NULL, path[32], name[HF_OBJECTIVE_NAME_SIZE];
+    char(*done)[HF_OBJECTIVE_NAME_SIZE] = NULL, path[32], outer[32], name[HF_OBJECTIVE_NAME_SIZE];
     int n_done = 0;
     double value;
     hid_t group = -1;
     snprintf(path, sizeof path, "/points%s", hf_ledger_list_of[list].group);
+    snprintf(outer, sizeof outer, "%.*s", hf_path_prefix_length(path) - 1, path);
     for (int i = 0; i < m->points->n_point && m->io.status == HF_OK; i++) {
         const hf_point *p = &m->points->point[i];
         const char *text = p->field ? p->field[hf_ledger_n_column() + list] : "";
@@ -184,7 +171,10 @@ static void write_list(merger *m, int list)
             }
             done = more;
             memcpy(done[n_done++], name, sizeof name);
-            if (group < 0) group = make_nested_group(m, path);
+            if (group < 0) {
+                hf_hdf5_close(&m->io, hf_hdf5_make_group(&m->io, outer));
+                group = hf_hdf5_make_group(&m->io, path);
+            }
             write_value(m, group, list, name);
         }
     }
