@@ -227,14 +227,6 @@ void hf_store_file_forget_earlier(const char *result)
     (void)unlink(name); /* if it stays, the next restart reports it */
 }
 
-static void remove_earlier(hf_store_file *f)
-{
-    if (f->earlier == HF_EARLIER_KEPT && unlink(f->earlier_name) != 0 && errno != ENOENT)
-        hf_warning(f->io.messages, "%s: cannot remove the earlier result %s: %s", f->out.path, f->earlier_name,
-                   strerror(errno));
-    f->earlier = HF_EARLIER_NONE;
-}
-
 /* Syncs the file before the rename. After a power cut there is either the old file or the new one, whole. */
 void hf_store_file_publish(hf_store_file *f, bool durable, bool is_finished)
 {
@@ -256,7 +248,11 @@ void hf_store_file_publish(hf_store_file *f, bool durable, bool is_finished)
     }
     hf_store_file_adopt(f);
     if (f->io.status == HF_OK && durable && hf_file_out_sync_folder(f->out.path) != 0) sync_failed(f);
-    if (f->io.status == HF_OK && is_finished) remove_earlier(f);
+    if (f->io.status != HF_OK || !is_finished) return;
+    if (f->earlier == HF_EARLIER_KEPT && unlink(f->earlier_name) != 0 && errno != ENOENT)
+        hf_warning(f->io.messages, "%s: cannot remove the earlier result %s: %s", f->out.path, f->earlier_name,
+                   strerror(errno));
+    f->earlier = HF_EARLIER_NONE;
 }
 
 /* ---- the end ---- */

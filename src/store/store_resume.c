@@ -371,16 +371,6 @@ static void open_stored_search(hf_store *s, stored_search *a)
         hf_hdf5_no_memory(io);
 }
 
-static void close_stored_search(stored_search *a)
-{
-    hf_optimiser_free(&a->optimiser);
-    hf_case_free(&a->settings);
-    free(a->model.variable_group);
-    free(a->model.variable_leader);
-    free(a->initial);
-    free(a->model.variable);
-}
-
 /* Adds the generations of the journal to the file and publishes it. *a must be all zero. */
 static hf_status recover(const char *path, stored_search *a, hf_summary *summary, hf_messages *messages)
 {
@@ -395,7 +385,12 @@ static hf_status recover(const char *path, stored_search *a, hf_summary *summary
     hf_status status = hf_hdf5_unlock(s->f.io.status);
     if (status == HF_OK && s->n_journal) status = restore(s, &a->optimiser, 0, summary, messages);
     if (status == HF_OK) status = hf_store_publish(s, summary, true, messages);
-    close_stored_search(a);
+    hf_optimiser_free(&a->optimiser);
+    hf_case_free(&a->settings);
+    free(a->model.variable_group);
+    free(a->model.variable_leader);
+    free(a->initial);
+    free(a->model.variable);
     hf_store_abandon(s, messages);
     return status;
 }
