@@ -1,7 +1,7 @@
 /* Sets the cut lengths, supports and loads of the as-built net in one load case (METHOD section 12). */
 #include <hifdm/built.h>
 
-#include <string.h>
+#include "linalg/dot.h"
 
 /* Adds the weights of nodes and cables under the gravity g to load_N [3][n_node] by row. */
 static void add_weight(const hf_built *b, const hf_material *t, const double g[3], double *load_N)
@@ -29,10 +29,7 @@ void hf_built_load_case(const hf_built *b, const hf_material *t, const hf_load_c
         cut_m[e] = b->scene.target[e];
         if (load_case->rise_K[e] != 0) cut_m[e] *= 1 + t->expansion_per_K[e] * load_case->rise_K[e];
     }
-    if (m->load_N)
-        memcpy(load_N, m->load_N, 3 * n * sizeof *load_N);
-    else
-        memset(load_N, 0, 3 * n * sizeof *load_N);
+    hf_copy(3 * n, m->load_N, load_N);
     for (size_t row = 0; row < n; row++)
         for (size_t c = 0; c < 3; c++) {
             size_t at = 3 * (size_t)m->node_of_row[row] + c;

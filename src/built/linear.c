@@ -150,8 +150,7 @@ static void push_by_errors(const hf_built_linear *l, const double *strain_N, con
                            double *force)
 {
     const hf_model *m = &l->built->model;
-    memset(force, 0, l->n_dof * sizeof *force);
-    if (load_N) memcpy(force, load_N, l->n_dof * sizeof *force);
+    hf_copy(l->n_dof, load_N, force);
     memset(v, 0, 3 * (size_t)m->n_free * sizeof *v);
     for (int e = 0; e < m->n_cable; e++) {
         double pull[3] = {0};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stddef.h>
+#include <string.h>
 
 double hf_dot(size_t n, const double *a, const double *b);
 
@@ -19,4 +20,13 @@ static inline void hf_subtract(size_t n, double factor, const double *restrict x
 {
     for (size_t i = 0; i < n; i++)
         y[i] -= factor * x[i];
+}
+
+/* Computes y = x for vectors [n]. If x is NULL, y becomes 0. */
+static inline void hf_copy(size_t n, const double *restrict x, double *restrict y)
+{
+    if (x)
+        memcpy(y, x, n * sizeof *y);
+    else
+        memset(y, 0, n * sizeof *y);
 }

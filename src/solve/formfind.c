@@ -15,6 +15,7 @@
 
 #include "base/elementary.h"
 #include "linalg/band.h"
+#include "linalg/dot.h"
 #include "solve/history.h"
 #include "solve/newton_matrix.h"
 #include <hifdm/metrics.h>
@@ -79,13 +80,8 @@ void hf_form_assemble(const hf_model *m, hf_workspace *w)
 /* The support rows keep the positions of the supports. */
 void hf_form_assemble_loads(const hf_model *m, hf_workspace *w)
 {
-    for (int c = 0; c < 3; c++) {
-        double *x = w->position_m + (size_t)c * (size_t)m->n_node;
-        if (m->load_N)
-            memcpy(x, m->load_N + (size_t)c * (size_t)m->n_node, (size_t)m->n_free * sizeof(double));
-        else
-            memset(x, 0, (size_t)m->n_free * sizeof(double));
-    }
+    for (ptrdiff_t c = 0; c < 3; c++)
+        hf_copy((size_t)m->n_free, m->load_N ? m->load_N + c * m->n_node : NULL, w->position_m + c * m->n_node);
     double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
@@ -110,15 +106,10 @@ static hf_status solve_positions(const hf_model *m, hf_workspace *w, int *bad_ro
 
 /* ---- measuring cables ---- */
 
-/* Return the larger and the smaller number without a function call. A NaN in `next` leaves `now` unchanged. */
+/* Returns the larger number without a function call. A NaN in `next` leaves `now` unchanged. */
 static inline double larger(double now, double next)
 {
     return next > now ? next : now;
-}
-
-static inline double smaller(double now, double next)
-{
-    return next < now ? next : now;
 }
 
 /* Sets lengths, tensions (Eqs. 4, 6) and the errors against the laws. length_gap is the length error for the stopping
@@ -160,7 +151,8 @@ void hf_form_measure_cables(const hf_model *m, const hf_form_settings *s, hf_wor
             r->tension_error = larger(r->tension_error, fabs(tension / cable.target - 1));
         } else if (may_vanish) {
             double strain = length / hf_law_required_length_m(cable, tension) - 1;
-            double pull = smaller(tension / m->reference_N, 1);
+            double pull = tension / m->reference_N;
+            if (pull > 1) pull = 1;
             double error = fabs(strain);
             bool is_taut = pull >= HF_SLACK_RATIO;
             if (is_taut) r->length_error = larger(r->length_error, error);
@@ -183,10 +175,7 @@ static void nodal_forces(const hf_model *m, hf_workspace *w, pulls which)
 {
     const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
     double *fx = w->force_N, *fy = fx + m->n_node, *fz = fy + m->n_node;
-    if (m->load_N)
-        memcpy(fx, m->load_N, 3 * (size_t)m->n_node * sizeof(double));
-    else
-        memset(fx, 0, 3 * (size_t)m->n_node * sizeof(double));
+    hf_copy(3 * (size_t)m->n_node, m->load_N, fx);
     for (int e = 0; e < m->n_cable; e++) {
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         if (which == WITHOUT_CHAINS && hf_law_has(w->law[e], HF_LAW_IS_RIGID) &&
