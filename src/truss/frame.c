@@ -12,6 +12,7 @@
 
 #include "base/arena.h"
 #include "linalg/band.h"
+#include "linalg/dot.h"
 #include "linalg/lapack.h"
 #include "net/numbering.h"
 #include "base/elementary.h"
@@ -101,11 +102,13 @@ static void resist(const double *k, const double *deformation, double *q)
     }
 }
 
-/* Computes the elastic deformations of a member under displacements of all nodes: the total deformations minus
- * the thermal ones. */
-static void deform(const hf_frame *f, int e, const double *displacement, double rise_K, double *deformation)
+/* Computes the elastic deformations of a member in a load case under displacements of all nodes, which are the total
+ * ones minus the thermal ones, and the forces q of these. */
+static void strain(const hf_frame *f, const hf_frame_load *load, int e, const double *displacement, double *deformation,
+                   double *q)
 {
     const hf_truss *t = f->truss;
+    double rise_K = load->temperature_K ? load->temperature_K[e] : 0;
     const double *x = f->axes + 9 * (size_t)e, *y = x + 3, *z = x + 6, length = f->length_m[e];
     const double *i = displacement + HF_TRUSS_DOF * (size_t)t->end[2 * e];
     const double *j = displacement + HF_TRUSS_DOF * (size_t)t->end[2 * e + 1];
@@ -121,19 +124,13 @@ static void deform(const hf_frame *f, int e, const double *displacement, double 
     }
     memset(deformation, 0, N_DEFORMATION * sizeof *deformation);
     deformation[0] = along[0] - t->expansion_per_K[e] * rise_K * length;
-    if (t->joint[e] == HF_JOINT_PINNED) return;
-    deformation[1] = turn_j[0] - turn_i[0];
-    deformation[2] = turn_i[2] - along[1] / length;
-    deformation[3] = turn_j[2] - along[1] / length;
-    deformation[4] = turn_i[1] + along[2] / length;
-    deformation[5] = turn_j[1] + along[2] / length;
-}
-
-/* Computes the elastic deformations of a member in a load case, and the forces q of these. */
-static void strain(const hf_frame *f, const hf_frame_load *load, int e, const double *displacement, double *deformation,
-                   double *q)
-{
-    deform(f, e, displacement, load->temperature_K ? load->temperature_K[e] : 0, deformation);
+    if (t->joint[e] == HF_JOINT_RIGID) {
+        deformation[1] = turn_j[0] - turn_i[0];
+        deformation[2] = turn_i[2] - along[1] / length;
+        deformation[3] = turn_j[2] - along[1] / length;
+        deformation[4] = turn_i[1] + along[2] / length;
+        deformation[5] = turn_j[1] + along[2] / length;
+    }
     resist(f->stiffness + N_DEFORMATION * (size_t)e, deformation, q);
 }
 
@@ -194,11 +191,10 @@ static int give_rows(const int *order, int n_ordered, int *row_of_dof)
     return n;
 }
 
-static const int *rows_of_member(const hf_frame *f, const int *row_of_dof, int e, int row[12])
+static void rows_of_member(const hf_frame *f, const int *row_of_dof, int e, int row[12])
 {
     for (int k = 0; k < 12; k++)
         row[k] = row_of_dof[HF_TRUSS_DOF * f->truss->end[2 * e + k / HF_TRUSS_DOF] + k % HF_TRUSS_DOF];
-    return row;
 }
 
 static int find_half_bandwidth(const hf_frame *f, const int *row_of_dof)
@@ -390,10 +386,12 @@ void hf_frame_free(hf_frame *frame)
 
 /* ---- load cases ---- */
 
-/* Subtracts the forces that displaced members need at the nodes from `force` [n_node][6]. */
-static void subtract_members(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
+/* Computes the forces out of balance at all dofs under a displacement, force [n_node][6]: the load minus the forces
+ * that the members need. */
+static void out_of_balance(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
 {
     const hf_truss *t = f->truss;
+    hf_copy(HF_TRUSS_DOF * (size_t)t->n_node, load->force, force);
     for (int e = 0; e < t->n_member; e++) {
         double deformation[N_DEFORMATION], q[N_DEFORMATION], s[12];
         const double *axes = f->axes + 9 * (size_t)e;
@@ -405,18 +403,6 @@ static void subtract_members(const hf_frame *f, const hf_frame_load *load, const
                 at[c] -= axes[c] * s[3 * k] + axes[3 + c] * s[3 * k + 1] + axes[6 + c] * s[3 * k + 2];
         }
     }
-}
-
-/* Computes the forces out of balance at all dofs under a displacement: the load minus the forces that
- * the members need. */
-static void out_of_balance(const hf_frame *f, const hf_frame_load *load, const double *displacement, double *force)
-{
-    size_t bytes = HF_TRUSS_DOF * (size_t)f->truss->n_node * sizeof *force;
-    if (load->force)
-        memcpy(force, load->force, bytes);
-    else
-        memset(force, 0, bytes);
-    subtract_members(f, load, displacement, force);
 }
 
 /* Returns the dof of a moment that nothing resists, or -1. */
