@@ -42,23 +42,16 @@ static int corner(const generator *g, int i, int j)
     return 2 * (j * (g->c->modules[0] + 1) + i);
 }
 
-/* Moves an outer front node to the support of its edge tie, which is outside the net. i, j: the module borders on which
- * the node lies; -1 if it is between two borders. */
-static void push_out(const generator *g, int i, int j, double position_m[3])
-{
-    const hf_cylinder *c = g->c;
-    position_m[0] += ((i == c->modules[0]) - (i == 0)) * c->edge_tie_m;
-    position_m[1] += ((j == c->modules[1]) - (j == 0)) * c->edge_tie_m;
-    position_m[2] = position_m[0] * position_m[0] / (4 * c->focal_length_m);
-}
-
-/* Adds a front node and the rear node behind it. i_line, j_line: as i, j of push_out. `where` is their id without
- * the first letter. */
+/* Adds a front node and the rear node behind it. An outer node is at the support of its edge tie, outside the net.
+ * i_line, j_line: the module borders on which the node lies; -1 if it is between two borders. `where` is the id of both
+ * without the first letter. */
 static void add_node(generator *g, const double *grid_m, int i_line, int j_line, const char *where)
 {
-    double front_m[3] = {grid_m[0], grid_m[1], grid_m[2]};
-    push_out(g, i_line, j_line, front_m);
-    double slope = front_m[0] / (2 * g->c->focal_length_m), stretch = hf_norm(1, slope, 0);
+    const hf_cylinder *cylinder = g->c;
+    double x = grid_m[0] + ((i_line == cylinder->modules[0]) - (i_line == 0)) * cylinder->edge_tie_m;
+    double y = grid_m[1] + ((j_line == cylinder->modules[1]) - (j_line == 0)) * cylinder->edge_tie_m;
+    double front_m[3] = {x, y, x * x / (4 * cylinder->focal_length_m)};
+    double slope = x / (2 * cylinder->focal_length_m), stretch = hf_norm(1, slope, 0);
     double normal[3] = {-slope / stretch, 0, 1 / stretch};
     for (int side = 0; side < 2; side++) {
         int i = g->i_node++;
