@@ -216,12 +216,6 @@ static double carried_over(const hf_precise *p, double least)
 
 /* ---- independent lengths ---- */
 
-static bool is_active(const hf_precise *p, int e)
-{
-    bool is_rigid = hf_law_has((hf_law)p->w->law[e], HF_LAW_IS_RIGID);
-    return is_rigid && p->cable[e].is_taut > 0 && !hf_precise_is_fixed(p->m, e);
-}
-
 /* Returns the first free row of an active cable, or with `last` the last one. */
 static int free_row(const hf_precise *p, int e, bool last)
 {
@@ -237,7 +231,8 @@ static int order_active(const hf_precise *p, int *order, bool *too_many)
     int n = 0;
     *too_many = false;
     for (int e = 0; e < p->m->n_cable; e++) {
-        if (!is_active(p, e)) continue;
+        bool is_rigid = hf_law_has((hf_law)p->w->law[e], HF_LAW_IS_RIGID);
+        if (!is_rigid || !(p->cable[e].is_taut > 0) || hf_precise_is_fixed(p->m, e)) continue;
         *too_many = n == 3 * p->m->n_free;
         if (*too_many) return 0;
         int k = n++;
@@ -457,14 +452,11 @@ static void prove_bounds(const hf_model *m, bool has_factor, double least_N_per_
  * [n_node] is scratch. */
 static double largest_pull_N(const hf_model *m, const hf_workspace *w, double *pull)
 {
-    double largest = 0;
     memset(pull, 0, (size_t)m->n_node * sizeof *pull);
     for (int e = 0; e < m->n_cable; e++)
         for (int k = 0; k < 2; k++)
             pull[m->end_row[2 * e + k]] += fabs(w->tension_N[e]);
-    for (int i = 0; i < m->n_free; i++)
-        largest = fmax(largest, pull[i]);
-    return largest;
+    return hf_max_magnitude((size_t)m->n_free, pull);
 }
 
 /* Sets condition and position_error_m with D. D is assembled and factored again: its norm is needed, and the band holds

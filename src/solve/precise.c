@@ -256,20 +256,12 @@ static void begin_near(hf_precise *p)
         p->near_N[i] = i < 3 * p->m->n_free ? p->force[i].hi : 0;
 }
 
-/* Sets near_gap for the changes of pull and s. */
-static void end_near(hf_precise *p)
-{
-    hf_precise_truss *t = &p->truss;
-    hf_flexibility_load(&t->flexibility, p->near_N + 3 * p->m->n_free, t->near_gap);
-    for (int k = 0; k < t->flexibility.rank; k++)
-        t->near_gap[k] += t->gap[k].hi - t->move[k];
-}
-
 /* Sets near_N, near_gap and near_over after move and change, relative to the last measurement. It computes only
  * differences, so rounding errors are relative to the moves. Returns the maximum error, as measure_precise does. */
 static double measure_near(hf_precise *p)
 {
     const hf_model *m = p->m;
+    hf_precise_truss *t = &p->truss;
     double largest = 0;
     begin_near(p);
     for (int e = 0; e < m->n_cable; e++) {
@@ -294,7 +286,9 @@ static double measure_near(hf_precise *p)
         c->near_over = c->over.hi + longer - c->change / hf_law_stiffness_N_per_m(cable, INFINITY);
         largest = fmax(largest, fabs(c->near_over) / cable.length_at_target_m);
     }
-    end_near(p);
+    hf_flexibility_load(&t->flexibility, p->near_N + 3 * m->n_free, t->near_gap);
+    for (int k = 0; k < t->flexibility.rank; k++)
+        t->near_gap[k] += t->gap[k].hi - t->move[k];
     largest = fmax(largest, gap_error(p));
     for (int i = 0; i < 3 * m->n_free; i++)
         largest = larger(largest, fabs(p->near_N[i]) / m->reference_N);
