@@ -122,14 +122,6 @@ static void let_go(hf_quadratic *q, int k)
     }
 }
 
-/* Computes d = J' normal. */
-static void find_share(const hf_quadratic *q, const hf_quadratic_limit *limit, double *d)
-{
-    for (int j = 0; j < q->n && limit->only >= 0; j++)
-        d[j] = limit->normal[limit->only] * q->inverse[j * q->ld + limit->only];
-    if (limit->only < 0) hf_dots((size_t)q->n, (size_t)q->n, q->inverse, (size_t)q->ld, limit->normal, d);
-}
-
 /* Computes z, the sum of the columns of J from column m on, weighted with d. */
 static void find_direction(const hf_quadratic *q, int m, const double *d, double *z)
 {
@@ -145,7 +137,9 @@ static hf_status obey(hf_quadratic *q, const hf_quadratic_limit *limit, int *ste
     while ((*steps_left)-- > 0) {
         int m = q->n_active, blocking = -1;
         double dual_step = INFINITY, free_square, whole;
-        find_share(q, limit, d);
+        for (int j = 0; j < n && limit->only >= 0; j++) /* d = J' normal */
+            d[j] = limit->normal[limit->only] * q->inverse[j * q->ld + limit->only];
+        if (limit->only < 0) hf_dots((size_t)n, (size_t)n, q->inverse, (size_t)q->ld, limit->normal, d);
         free_square = hf_dot((size_t)(n - m), d + m, d + m);
         whole = hf_dot((size_t)n, d, d);
         find_direction(q, m, d, z);
@@ -247,13 +241,6 @@ static hf_status begin(hf_quadratic *q, const double *hessian, const double *gra
     return HF_OK;
 }
 
-static void remember_sides(hf_quadratic *q)
-{
-    memset(q->side, 0, (size_t)q->n * sizeof(int));
-    for (int k = 0; k < q->n_active; k++)
-        if (q->active[k].only >= 0) q->side[q->active[k].only] = q->active[k].sign > 0 ? 1 : -1;
-}
-
 hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const double *gradient, const double *low,
                              const double *high, hf_quadratic_worst *worst, void *context)
 {
@@ -268,6 +255,8 @@ hf_status hf_quadratic_solve(hf_quadratic *q, const double *hessian, const doubl
         if (!has_inverse) invert_transposed(q);
         HF_TRY(obey(q, &limit, &steps_left));
     }
-    remember_sides(q);
+    memset(q->side, 0, (size_t)q->n * sizeof(int));
+    for (int k = 0; k < q->n_active; k++)
+        if (q->active[k].only >= 0) q->side[q->active[k].only] = q->active[k].sign > 0 ? 1 : -1;
     return HF_OK;
 }
