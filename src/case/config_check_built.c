@@ -141,11 +141,6 @@ static void check_expansions(const hf_case *c, hf_config_faults *f)
 
 /* ---- tolerance ---- */
 
-static bool is_of_surface(hf_tolerance_measure measure)
-{
-    return measure != HF_TOLERANCE_PSI && measure < HF_TOLERANCE_MIN_TENSION;
-}
-
 static void check_require(const hf_case *c, hf_config_faults *f)
 {
     static const char list[] = "tolerance.require";
@@ -155,14 +150,15 @@ static void check_require(const hf_case *c, hf_config_faults *f)
             hf_config_fault_in_row(f, list, i, "measure", "has no limit; give at_most, at_least or both");
         if (row->at_least > row->at_most) hf_config_fault_in_row(f, list, i, "at_least", "must not be above at_most");
         bool is_ruze = row->measure >= HF_TOLERANCE_GAIN_LOSS && row->measure < HF_TOLERANCE_PATTERN_LOSS,
-             is_loss = is_ruze || row->measure == HF_TOLERANCE_PATTERN_LOSS;
+             is_loss = is_ruze || row->measure == HF_TOLERANCE_PATTERN_LOSS,
+             is_of_surface = row->measure != HF_TOLERANCE_PSI && row->measure < HF_TOLERANCE_MIN_TENSION;
         if (is_loss && !isnan(row->at_least))
             hf_config_fault_in_row(f, list, i, "at_least", "asks for a loss of gain; give at_most");
         if (row->measure == HF_TOLERANCE_MIN_TENSION && !isnan(row->at_most))
             hf_config_fault_in_row(f, list, i, "at_most", "asks for slack cables; give at_least");
         else if (row->at_most < 0 && row->measure != HF_TOLERANCE_PATTERN_LOSS)
             hf_config_fault_in_row(f, list, i, "at_most", "is below 0, which no net can reach");
-        if (is_of_surface(row->measure) && !c->has_surface)
+        if (is_of_surface && !c->has_surface)
             hf_config_fault_in_row(f, list, i, "measure", "is not measured: add a section surface");
         else if (is_ruze && c->surface.frequencies_Hz.n == 0)
             hf_config_fault_in_row(f, list, i, "measure", "needs surface.frequencies_Hz");

@@ -148,13 +148,6 @@ static bool quote(const reader *r, const hf_field *field, const char *value, cha
     return true;
 }
 
-static hf_status check_value(reader *r, const hf_study_axis *axis, const char *text, yaml_mark_t mark)
-{
-    char location[HF_PATH_SIZE + 128];
-    snprintf(location, sizeof location, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
-    return hf_config_check_value(axis->key.path, text, location, r->messages);
-}
-
 /* Sets value k of the axis. A study may have a million values, so numbers that are within their range are not
  * parsed as YAML. */
 static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, bool is_canonical, yaml_mark_t mark)
@@ -172,8 +165,11 @@ static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, 
                                                        : quote(r, axis->key.field, value, text);
     bool is_one_line = !strchr(value, '\n');
     hf_status status = fits && is_one_line ? HF_OK : HF_BAD_CASE;
-    if (status == HF_OK && to == key && !hf_config_is_in_range(axis->key.field, text))
-        status = check_value(r, axis, text, mark);
+    if (status == HF_OK && to == key && !hf_config_is_in_range(axis->key.field, text)) {
+        char location[HF_PATH_SIZE + 128];
+        snprintf(location, sizeof location, "%s:%zu:%zu: sweep", r->study->path, mark.line + 1, mark.column + 1);
+        status = hf_config_check_value(key, text, location, r->messages);
+    }
     if (!fits) fault(r, mark, key, "is too long");
     if (!is_one_line) fault(r, mark, key, "a value must be on one line");
     if (status != HF_OK) {
