@@ -77,7 +77,6 @@ const char *hf_scene_paraboloid_fault(const hf_paraboloid *p, char *what, size_t
 /* The grid in the plane of the aperture is a front net at z = 0. Its origin is the middle of the aperture. */
 typedef struct {
     const hf_paraboloid *p;
-    hf_front_net *front;
     int *node_at; /* [2 rings + 1][2 rings + 1], nodes of the quad grid, by rows */
 } plane_grid;
 
