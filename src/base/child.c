@@ -55,12 +55,6 @@ pid_t hf_child_spawn(const char *const *command, const char *text)
     return failed ? -1 : child;
 }
 
-static double seconds_of(const struct rusage *used)
-{
-    return (double)(used->ru_utime.tv_sec + used->ru_stime.tv_sec) +
-           1e-6 * (double)(used->ru_utime.tv_usec + used->ru_stime.tv_usec);
-}
-
 /* Returns true for a signal that no fault of the program raises. SIGXCPU is a fault if the limit of hf_child_limit_cpu
  * raised it, and no fault if a lower limit of the user raised it. This process has the same limit of the user. */
 static bool is_from_outside(int number, const struct rusage *used)
@@ -70,8 +64,10 @@ static bool is_from_outside(int number, const struct rusage *used)
     for (size_t i = 0; i < sizeof of_faults / sizeof *of_faults; i++)
         if (number == of_faults[i]) return false;
     if (number != SIGXCPU) return true;
+    double used_s = (double)(used->ru_utime.tv_sec + used->ru_stime.tv_sec) +
+                    1e-6 * (double)(used->ru_utime.tv_usec + used->ru_stime.tv_usec);
     return getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-           seconds_of(used) > (double)limit.rlim_cur - 0.5; /* the kernel counts CPU time in clock ticks */
+           used_s > (double)limit.rlim_cur - 0.5; /* the kernel counts CPU time in clock ticks */
 }
 
 hf_child_end hf_child_wait(pid_t child)
