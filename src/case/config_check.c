@@ -94,11 +94,8 @@ static const char *frequency_fault(double frequency_Hz, char what[WHAT_SIZE])
 static void check_frequencies(const hf_double_list *frequency_Hz, hf_config_faults *f)
 {
     char what[WHAT_SIZE];
-    for (int i = 0; i < frequency_Hz->n; i++) {
-        if (!frequency_fault(frequency_Hz->value[i], what)) continue;
-        hf_config_fault_of(f, "surface.frequencies_Hz", what);
-        return;
-    }
+    for (int i = 0; i < frequency_Hz->n && !f->failed; i++)
+        if (frequency_fault(frequency_Hz->value[i], what)) hf_config_fault_of(f, "surface.frequencies_Hz", what);
 }
 
 static void check_pattern(const hf_case *c, hf_config_faults *f)
