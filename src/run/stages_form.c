@@ -1,23 +1,28 @@
 /* Finds the shape of the case, explains, measures and stores it. */
 #include "run/stages.h"
 
-#include "base/arena.h"
 #include "base/clock.h"
 #include "run/problem_parts.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define HISTORY_MAX 1000000 /* maximum number of iterations in the history */
 
+/* Takes the memory of the history from calloc, which does not touch it: an iteration rarely fills a thousandth of it. */
 static hf_status create_history(const hf_form_settings *s, bool has_truss, hf_history *h, void **block)
 {
+    double **const column[] = {
+        &h->psi_m,        &h->residual_N,      &h->inner_tension_ratio, &h->boundary_tension_ratio,
+        &h->length_error, &h->coupling.step_m, &h->coupling.psi_m,      &h->coupling.deflection_max_m};
     h->capacity = s->max_iterations < HISTORY_MAX ? s->max_iterations : HISTORY_MAX;
-    size_t n = (size_t)h->capacity, n_coupling = has_truss ? (size_t)s->coupling.max_iterations : 0;
-    h->coupling.capacity = (int)n_coupling;
-    return HF_ARENA_ARRAYS(block, HF_ARRAY(h->psi_m, n), HF_ARRAY(h->residual_N, n),
-                           HF_ARRAY(h->inner_tension_ratio, n), HF_ARRAY(h->boundary_tension_ratio, n),
-                           HF_ARRAY(h->length_error, n), HF_ARRAY(h->coupling.step_m, n_coupling),
-                           HF_ARRAY(h->coupling.psi_m, n_coupling), HF_ARRAY(h->coupling.deflection_max_m, n_coupling));
+    h->coupling.capacity = has_truss ? s->coupling.max_iterations : 0;
+    double *to = *block = calloc(5 * (size_t)h->capacity + 3 * (size_t)h->coupling.capacity, sizeof *to);
+    for (int k = 0; k < 8 && to; k++) {
+        *column[k] = to;
+        to += k < 5 ? h->capacity : h->coupling.capacity;
+    }
+    return *block ? HF_OK : HF_NO_MEMORY;
 }
 
 /* Measures and stores the shape in the problem's workspace. Returns HF_INTERRUPTED for an interrupted measurement after
@@ -55,6 +60,6 @@ hf_status hf_stage_form(hf_run *r, hf_summary *s, hf_messages *messages)
     for (int k = 0; k < HF_DESIGN_ROWS_MAX; k++) /* measured in hf_stage_begin, with the initial design */
         to->result.objective[k] = (double)NAN;
     hf_status status = keep_form(r, &history, s, messages);
-    hf_arena_free_block(block);
+    free(block);
     return status;
 }
