@@ -215,7 +215,7 @@ mutants-random: ## N edits at random places that SEED draws: which do the tests 
 	+$(Q)BUILD=$(BUILD) $(PYTHON) tools/mutants_random.py --seed $(SEED) --n $(N) $(MUTANTS_ARGS)
 
 abi: ## does the library export what the public headers declare, and nothing is gone? do files call in cycles?
-	$(SUB) $(SHARED)
+	$(SUB) $(SHARED) $(PROGRAM)
 	$(Q)$(PYTHON) tools/abi.py $(SHARED)
 	$(Q)$(PYTHON) tools/cycles.py $(BUILD)
 
@@ -504,8 +504,9 @@ $(BUILD)/key_help_text.c: src/case/keys.md Makefile
 	$(call say,PAGE,$@)
 	@mkdir -p $(@D)
 	$(Q)awk -v RS= '/^### / { n = split(substr($$0, 5), path, ", "); next } \
-	  n { gsub(/\n/, " "); for (i = 1; i <= n; i++) print path[i] "\n" $$0; n = 0 }' $< | tr '\n' '\0' >$@.bytes
-	$(Q){ $(call bytes,extern const char hf_config_help_text[]; const char hf_config_help_text,$@.bytes); } >$@.tmp
+	  n { sub(/\n+$$/, ""); gsub(/\n/, " "); for (i = 1; i <= n; i++) print path[i] "\n" $$0; n = 0 }' $< >$@.lines
+	$(Q)tr '\n' '\0' <$@.lines >$@.bytes
+	$(Q){ echo '#include "case/config_key.h"'; $(call bytes,const char hf_config_help_text,$@.bytes); } >$@.tmp
 	$(Q)mv $@.tmp $@
 
 $(BUILD)/%_text.o: $(BUILD)/%_text.c $(BUILD)/flags

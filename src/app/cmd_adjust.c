@@ -452,11 +452,11 @@ const hf_command hf_cmd_adjust = {
     .argument = "CASE",
     .help = "compute turnbuckle adjustments from measured node positions of the as-built net",
     .about = "hifdm estimates the errors of the cutting lengths from the measured node positions and the `tolerance` "
-             "section of the case. From these errors, hifdm selects the fewest adjustments that reduce the value of "
+             "section of the case. From these errors, hifdm selects a few adjustments that minimise the RMS error "
              "adjust.figure. hifdm considers only cables in the set adjust.set. Each adjustment is a multiple of the "
              "step adjust.step_m within the range adjust.range_m. Make the adjustments in the order of the table. Each "
              "row of the table gives the cable tension before and after the adjustment. The row also gives the "
-             "predicted value of adjust.figure after the adjustment.",
+             "predicted RMS error after the adjustment.",
     .examples = "hifdm adjust case.yaml --measured nodes.csv -o moves.csv\n"
                 "hifdm adjust case.yaml --measured nodes.csv --result case.h5 --report moves.html\n"
                 "hifdm adjust case.yaml --result case.h5 --measured nodes.csv --set adjust.aim=target_positions\n"

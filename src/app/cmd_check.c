@@ -348,9 +348,8 @@ static void print_refine_time(const hf_check *c, FILE *f)
                 c->problem.model.n_leader);
 }
 
-/* Checks and tries a case, and prints what it finds. *check must be zero on entry. Returns HF_OK,
- * HF_BAD_CASE with all faults, the status of an ill-posed scene, or that of another failure. Free
- * check->problem in any case. */
+/* Checks and tries a case, and prints what it finds. *c must be zero on entry. Returns HF_OK, HF_BAD_CASE with all
+ * faults, the status of an ill-posed scene, or that of another failure. Free c->problem in any case. */
 static hf_status check_case(const hf_check_request *request, const char *name, hf_check *c, FILE *f,
                             hf_messages *messages)
 {
@@ -524,10 +523,11 @@ const hf_command hf_cmd_check = {
     .name = "check",
     .argument = "CASE",
     .help = "check a case or a study, and print its stages, problem sizes, memory and run time",
-    .about = "hifdm check runs the form-finding but not the optimisation. The command writes no files. hifdm check "
-             "reports all errors of the case at once, each with its file, line and column.\nFor a study, hifdm check "
-             "prints the axes, the number of points, the first and last points, and the finished points. hifdm check "
-             "builds the net of every point of the study. hifdm check fully checks only the first point of the study.",
+    .about =
+        "hifdm check runs the form-finding but not the optimisation. The command writes no files. hifdm check "
+        "reports all errors of the case at once, each with its file, line and column.\nFor a study, hifdm check "
+        "prints the axes, the number of points, the first and last points, and the finished points. hifdm check builds "
+        "the nets of as many points as time allows. hifdm check fully checks the first point that can be run.",
     .examples = "hifdm check case.yaml --threads 64\n"
                 "hifdm check study.yaml",
     .uses_threads = true,

@@ -22,7 +22,7 @@ static hf_status command_diff(const hf_options *o, FILE *file, hf_messages *mess
 const hf_command hf_cmd_diff = {
     .name = "diff",
     .argument = "A B",
-    .help = "compare the datasets of two result files, ignoring times and provenance",
+    .help = "compare the data sets of two result files, ignoring times and provenance",
     .about = "Two runs of the same case with the same seed give bit-identical results. Neither the number of threads "
              "nor interruptions change the results. If the files differ, hifdm diff prints the first differences and "
              "exits with status 1.",

@@ -177,6 +177,6 @@ const hf_command hf_cmd_explain = {
              "Without the argument WORD, hifdm explain lists all entries of the glossary.",
     .examples = "hifdm explain straight_chain\n"
                 "hifdm explain position_bound_m\n"
-                "hifdm explain \"warning: slack in the form-finding shape, 1: c7\"",
+                "hifdm explain \"warning: these cables of the form-finding shape are slack (1): c7\"",
     .run = command_explain,
 };

@@ -83,7 +83,8 @@ const hf_command hf_cmd_export = {
     .name = "export",
     .argument = "FILE",
     .help = "export a result as CSV files, as VTK files for ParaView, or as a cut list",
-    .about = "hifdm export writes numbers with 17 significant digits, so a program reads exactly the stored values.",
+    .about = "hifdm export writes numbers with 17 significant digits, except in rounded files such as cut_mm.csv, so a "
+             "program reads exactly the stored values.",
     .examples = "hifdm export chen2022.h5 --csv best\n"
                 "hifdm export chen2022.h5 --csv found --stage form\n"
                 "hifdm export night.h5 --csv cold --load-case cold\n"

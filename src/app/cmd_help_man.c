@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+/* The table stands in this file, because the other forms of the help call this file. */
 const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
     {"0", "done"},
     {"1", "files differ"},

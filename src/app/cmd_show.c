@@ -54,7 +54,8 @@ const hf_command hf_cmd_show = {
     .argument = "FILE",
     .help = "print the summary of a result file, or the table of a merged study",
     .about = "The summary of a run begins with the result, continues with a row for each stage, and ends with the "
-             "warnings. The --verbose option adds error bounds, the tension ratios of cable sets, the objectives, the "
+             "warnings. The --verbose option adds estimated position errors, conditions and backward errors, the "
+             "tension ratios of cable sets, the objectives, the "
              "surface errors of every stage, and times.\nFor a merged study, hifdm show prints the axes, the values "
              "that all points share, and a table of the points. The best point is marked. With the --verbose option, "
              "hifdm show prints all points of a large study.",

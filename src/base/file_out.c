@@ -204,10 +204,10 @@ static void remove_temporary(hf_file_out *f, hf_messages *messages)
     if (unlink(f->temporary) == 0 || errno == ENOENT) return;
     f->is_left = true;
     if (messages)
-        hf_warning(
-            messages,
-            "%s: cannot remove the temporary file %s: %s. The next command that writes %s removes this temporary file",
-            f->path, f->temporary, strerror(errno), hf_path_name(f->path));
+        hf_warning(messages,
+                   "%s: cannot remove the temporary file %s: %s. Remove this file, or wait for the next command that "
+                   "writes %s to remove it",
+                   f->path, f->temporary, strerror(errno), hf_path_name(f->path));
 }
 
 static int close_with(int file, int why)

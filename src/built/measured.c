@@ -208,7 +208,8 @@ static const char *guess_unit(double ratio)
 static void describe_motion(const rigid_fit *f, int n, char text[FRAME_SIZE])
 {
     snprintf(text, FRAME_SIZE,
-             "a shift of their centre by (%.4g, %.4g, %.4g) mm and a rotation by %.4g degrees explain all but %.3g mm",
+             "a shift of the centre of the nodes by (%.4g, %.4g, %.4g) mm and a rotation by %.4g degrees explain all "
+             "but %.3g mm",
              (f->centre_m[1][0] - f->centre_m[0][0]) * 1e3, (f->centre_m[1][1] - f->centre_m[0][1]) * 1e3,
              (f->centre_m[1][2] - f->centre_m[0][2]) * 1e3, f->angle / HF_RAD_PER_DEG, sqrt(f->rest / n) * 1e3);
 }
@@ -303,7 +304,7 @@ hf_status hf_measured_check(const char *path, const hf_built *b, const double *e
     if (f.square > DOUBTFUL * DOUBTFUL * allowed_square && f.rest < EXPLAINED * f.square) {
         char frame[FRAME_SIZE];
         describe_motion(&f, measured->n_node, frame);
-        hf_warning(messages, "%s: %s. Is this the coordinate frame of the case?", path, frame);
+        hf_warning(messages, "%s: %s. Are the positions in the coordinate frame of the case?", path, frame);
     }
     return HF_OK;
 }

@@ -470,11 +470,14 @@ static void fill_border(hf_saddle *s)
  * HF_SINGULAR when rounding prevents a solution. */
 static hf_status solve_band(const hf_saddle *s, int n, double *b)
 {
-    for (int first = 0; s->is_dual && first < n; first += HF_SADDLE_PANEL) {
+    if (!s->is_dual) {
+        hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
+        return HF_OK;
+    }
+    for (int first = 0; first < n; first += HF_SADDLE_PANEL) {
         int n_now = n - first < HF_SADDLE_PANEL ? n - first : HF_SADDLE_PANEL;
         if (!refine_iteratively(&s->dual, n_now, b + (ptrdiff_t)first * s->n_band)) return HF_SINGULAR;
     }
-    if (!s->is_dual) hf_band_back_solve_general(s->n_band, s->half_bandwidth, n, s->general, s->pivot, b, s->n_band);
     return HF_OK;
 }
 

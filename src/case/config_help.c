@@ -4,9 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The entries of keys.md, which the Makefile embeds: pattern, description, pattern, description, ..., "". */
-extern const char hf_config_help_text[];
-
 const char *hf_config_help(const char *path, const char *key)
 {
     char whole[HF_KEY_SIZE];

@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* The entries of keys.md, which the Makefile embeds: pattern, description, pattern, description, ..., "". */
+extern const char hf_config_help_text[];
+
 #define HF_KEY_SIZE 160 /* maximum size of a path with its NUL */
 
 typedef struct {

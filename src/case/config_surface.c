@@ -25,9 +25,9 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
     char location[HF_LOCATION_SIZE], other[HF_LOCATION_SIZE], line[32] = "";
     bool is_round = surface->kind == HF_SURFACE_PARABOLOID;
     const hf_target_surface_fit *fit = is_round ? paraboloid : cylinder;
-    const char *advice = "its vertex is the origin, its axis z, its focal length this one";
+    const char *advice = "The vertex of the target surface is the origin, and its axis is z";
     if (is_on(is_round ? cylinder : paraboloid))
-        advice = is_round ? "give surface.kind: parabolic_cylinder" : "give surface.kind: paraboloid";
+        advice = is_round ? "Give surface.kind: parabolic_cylinder" : "Give surface.kind: paraboloid";
     if (!hf_config_location(c, "surface.focal_length_m", location, sizeof location) &&
         hf_config_location(c, "surface.kind", other, sizeof other))
         memcpy(location, other, sizeof location);
@@ -35,7 +35,7 @@ static hf_status refuse(const hf_case *c, const hf_scene *scene, const hf_surfac
     return hf_error(messages, HF_BAD_CASE,
                     "%s: the inner nodes are not on the %s with f = %g m. The RMS height error of the inner nodes is "
                     "%.4g mm, and node '%s'%s has the maximum error of %.4g mm. The RMS height error is %.4g mm for "
-                    "the parabolic_cylinder z = x^2/(4f), and %.4g mm for the paraboloid z = (x^2 + y^2)/(4f); %s",
+                    "the parabolic_cylinder z = x^2/(4f), and %.4g mm for the paraboloid z = (x^2 + y^2)/(4f). %s",
                     location, hf_surface_kind_word[surface->kind], surface->focal_length_m, fit->rms_m * 1e3,
                     scene->node_id[fit->farthest], line, fit->max_m * 1e3, cylinder->rms_m * 1e3,
                     paraboloid->rms_m * 1e3, advice);

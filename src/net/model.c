@@ -379,7 +379,7 @@ hf_status hf_model_build(const hf_scene *scene, const hf_form_settings *form, hf
     if (status == HF_OK && 3 * n_band > INT_MAX / 2) { /* 3: the general band of a net with struts */
         free(order);
         return hf_error(messages, HF_NO_MEMORY,
-                        "the band matrix with %d rows and half-bandwidth %d is too large. Use fewer cells", m->n_free,
+                        "the band matrix with %d rows and half-bandwidth %d is too large. Use fewer nodes", m->n_free,
                         m->half_bandwidth);
     }
     m->n_band = (int)n_band;

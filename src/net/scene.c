@@ -141,7 +141,7 @@ hf_status hf_scene_check(const hf_scene *scene, hf_messages *messages)
         return hf_error(messages, HF_BAD_CASE, "scene: the net has no free nodes, because every node is a support");
     if (n_inner == 0)
         return hf_error(messages, HF_BAD_CASE,
-                        "scene: no node has the role 'inner', so the surface error psi would include no nodes. Give "
+                        "scene: no node has the role 'inner', so psi would include no nodes. Give "
                         "the role 'inner' to the nodes on the surface");
     if (n_free == scene->n_node)
         return hf_error(messages, HF_BAD_CASE,

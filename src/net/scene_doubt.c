@@ -197,8 +197,8 @@ static void doubt_plane(const hf_scene *s, hf_messages *messages)
     double rms_m = sqrt(square / n);
     if (rms_m > FLATTER_PART * extent_m)
         hf_warning(messages,
-                   "scene: all supports are %s, and no load, tie or strut holds the net away from the supports. With "
-                   "any tensions, the net collapses to its supports, so the inner nodes are at least %.4g mm RMS from "
+                   "scene: all supports are %s, and no load, tie or strut holds the net away from there. With any "
+                   "tensions, the net collapses there, so the inner nodes are at least %.4g mm RMS from "
                    "their target positions. Put supports on the surface, tie the net to another net, or add loads",
                    word[f.n_along], rms_m * 1e3);
 }

@@ -184,9 +184,10 @@ static hf_status refuse(const search *q, int axis, int n_missing, hf_messages *m
     char where[HF_LOCATION_SIZE];
     hf_messages_location(messages, where, "optimize.symmetry");
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: the net is not symmetric about the plane %c = %.10g m. For %d cables, no mirror image has the "
-                    "same roles, loads, group, law and target: %s%s",
-                    where, "xy"[axis], (q->low_m[axis] + q->high_m[axis]) / 2, n_missing, names, more);
+                    "%s: the net is not symmetric about the plane %c = %.10g m. %d cable%s no mirror image with the "
+                    "same ends, roles, loads, group, law and target: %s%s",
+                    where, "xy"[axis], (q->low_m[axis] + q->high_m[axis]) / 2, n_missing,
+                    n_missing == 1 ? " has" : "s have", names, more);
 }
 
 /* ---- classes of design variables ---- */

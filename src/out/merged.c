@@ -136,15 +136,15 @@ static hf_status read_points(hf_merged *m, hf_messages *messages)
     for (int i = 0; i < m->n; i++)
         if (!(m->status.value[i] >= 0 && m->status.value[i] <= SCHAR_MAX))
             return hf_error(messages, HF_IO,
-                            "%s: this file is damaged, because the dataset /points/status contains an unknown status",
+                            "%s: this file is damaged, because the data set /points/status contains an unknown status",
                             m->path);
     if (m->id.n != m->n)
         return hf_error(messages, HF_IO,
-                        "%s: this file is damaged, because the dataset /points/id does not contain every point",
+                        "%s: this file is damaged, because the data set /points/id does not contain every point",
                         m->path);
     if (m->reason.n != m->n)
         return hf_error(messages, HF_IO,
-                        "%s: this file is damaged, because the dataset /points/reason does not contain every point",
+                        "%s: this file is damaged, because the data set /points/reason does not contain every point",
                         m->path);
     return HF_OK;
 }

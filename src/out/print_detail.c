@@ -1,4 +1,5 @@
-/* Prints a block for each stage of a result. Contents: parts, search, refinement. */
+/* Prints a block for each stage of a result, and the phrases that the summary shares. Contents: parts, search,
+ * refinement. */
 #include "out/print_summary.h"
 
 #include "net/symmetry.h"

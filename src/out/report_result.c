@@ -443,7 +443,7 @@ static hf_status check_truss(const page *p, hf_messages *messages)
     for (int i = 0; i < 2 * end->n; i++)
         if (!(end->value[i] >= 0 && end->value[i] < p->series[TRUSS_POSITION].n))
             return hf_error(messages, HF_IO,
-                            "%s: this file is damaged, because the dataset /truss/member/end refers to a missing node",
+                            "%s: this file is damaged, because the data set /truss/member/end refers to a missing node",
                             p->path);
     return HF_OK;
 }

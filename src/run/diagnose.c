@@ -86,7 +86,7 @@ static void name_loose(const hf_problem *p, const char *stage, const hf_workspac
     if (r->n_loose)
         hf_warning(messages,
                    "no taut cable holds these nodes of the %s shape (%d): %s. hifdm places loose nodes as close to "
-                   "their target positions as their cables allow. The surface error psi does not include loose nodes",
+                   "their target positions as their cables allow. psi does not include loose nodes",
                    stage, r->n_loose, close_names(&loose));
     if (r->n_drifting)
         hf_warning(messages,
@@ -521,8 +521,8 @@ static hf_status tell_reach(const reach *q, hf_messages *messages)
     for (int i = 0; i < o->n_variable_row; i++)
         if (q->now.variable_row[i])
             hf_warning(messages,
-                       "%s: this design variable has no effect at the initial design, because its cables or the cables "
-                       "at its supports are slack",
+                       "%s: this row has no effect at the initial design, because its cables, or the cables at its "
+                       "supports, are slack",
                        hf_config_place(&q->p->settings, place, "optimize.variables.%d", i));
     for (int i = 0; i < o->n_limit; i++)
         if (q->now.limit[i])
@@ -642,7 +642,7 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
                         shapeless, hf_status_text(of->trial_status[0]), wider);
     char of_initial[64] = "has no shape", others[64] = "";
     if (isfinite(base.boundary_tension_ratio))
-        snprintf(of_initial, sizeof of_initial, "has %.4g", base.boundary_tension_ratio);
+        snprintf(of_initial, sizeof of_initial, "has the ratio %.4g", base.boundary_tension_ratio);
     if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
     return hf_error(messages, HF_NO_FEASIBLE,
                     "optimize: the search found no feasible design, because %ld of %ld evaluations are above "

@@ -344,8 +344,8 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
                "optimize.front: a front is not a single design, so hifdm computes %s%s%s for the net after "
                "form-finding, before optimisation. To compute load cases or samples for point N of the front, run "
                "`hifdm run %s --point FRONT.h5:N -o point.h5`",
-               p->load_cases.n ? "load_cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
-               c->has_tolerance ? "tolerance" : "", c->path);
+               p->load_cases.n ? "load cases" : "", p->load_cases.n && c->has_tolerance ? " and " : "",
+               c->has_tolerance ? "samples" : "", c->path);
 }
 
 hf_status hf_problem_base(hf_problem *p, hf_messages *messages)

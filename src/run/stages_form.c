@@ -9,7 +9,8 @@
 
 #define HISTORY_MAX 1000000 /* maximum number of iterations in the history */
 
-/* Takes the memory of the history from calloc, which does not touch it: an iteration rarely fills a thousandth of it. */
+/* Allocates the history with calloc, because calloc does not touch the memory. Most form-findings fill less than a
+ * thousandth of the history. */
 static hf_status create_history(const hf_form_settings *s, bool has_truss, hf_history *h, void **block)
 {
     double **const column[] = {

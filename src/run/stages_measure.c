@@ -195,8 +195,9 @@ hf_status hf_stage_measure(hf_run *r, hf_stage stage, const hf_workspace *w, hf_
                    "in the ratio N l / tension%s. Raise the cable tensions, or lower surface.mesh_tension_N_per_m",
                    hf_stage_word[stage], hf_facet_mesh_pull_words(measures->mesh_pull_ratio, words),
                    measures->mesh_pull_ratio <= HF_FACET_PULL_MOST ? ""
-                   : p->surface.has_pattern ? ", so the facets have neither errors nor a far field"
-                                            : ", so the facets have no errors");
+                   : p->surface.has_pattern
+                       ? ", which does not hold here, so hifdm reports neither facet errors nor a far field"
+                       : ", which does not hold here, so hifdm reports no facet errors");
     if (!fit->converged)
         hf_warning(messages,
                    "surface: the best fit to the shape of stage %s did not converge in %d steps, so the results of "

@@ -208,19 +208,24 @@ static hf_status run_points(sweep *w)
     w->count.wall_s = hf_clock_s() - w->start_s;
     w->count.has_run = true;
     int left = n->n_todo - n->n_done - n->n_failed - n->n_elsewhere;
-    if (n->n_elsewhere) hf_warning(w->messages, "another process is running %d points of this sweep", n->n_elsewhere);
+    if (n->n_elsewhere)
+        hf_warning(w->messages, "other processes run or have run %d point%s of this sweep", n->n_elsewhere,
+                   n->n_elsewhere == 1 ? "" : "s");
     if (w->fatal != HF_OK)
-        return hf_error(w->messages, w->fatal,
-                        "the sweep has stopped with %d missing points, but none of these points counts as failed. "
-                        "Remove the cause, then run the same command again to resume",
-                        left);
+        return hf_error(
+            w->messages, w->fatal,
+            "the sweep has stopped with %d missing point%s, which do%s not count as failed. Remove the cause, "
+            "then run the same command again to resume",
+            left, left == 1 ? "" : "s", left == 1 ? "es" : "");
     if (left)
         return hf_error(w->messages, HF_INTERRUPTED,
-                        "the sweep was interrupted with %d missing points. Run the same command again to resume", left);
+                        "the sweep was interrupted with %d missing point%s. Run the same command again to resume", left,
+                        left == 1 ? "" : "s");
     int n_failed = n->n_failed + n->n_failed_before;
     if (!n_failed) return HF_OK;
-    return hf_error(w->messages, HF_POINTS_FAILED, "%d points failed%s. 'hifdm status' lists the reasons", n_failed,
-                    n->n_failed ? "" : " earlier and are run again only with --retry failed");
+    return hf_error(w->messages, HF_POINTS_FAILED, "%d point%s failed%s. 'hifdm status' lists the reasons", n_failed,
+                    n_failed == 1 ? "" : "s",
+                    n->n_failed ? "" : " earlier. Only --retry failed runs failed points again");
 }
 
 hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, hf_messages *messages)

@@ -209,7 +209,7 @@ static void step(const hf_chord *chord, const hf_chord_lanes *l)
 
 /* ---- measures ---- */
 
-/* Returns the surface error psi of Eq. 10. */
+/* Returns psi of Eq. 10. */
 static vec psi(const hf_model *m, const double *x_m, int p)
 {
     vec sum = splat(0), d[3];

@@ -163,9 +163,9 @@ static void warn_of_no_beam(const hf_scene *scene, const hf_facets *facets, cons
         hf_gain_loss_dB(&objectives->beam[k], &(hf_pattern_surface){.facets = facets, .position_m = scene->position_m});
     if (loss_dB > LOSS_MOST_DB)
         hf_warning(messages,
-                   "%s: gain: even at its target positions, the net loses %.3g dB in the direction of the beam. This "
-                   "objective therefore cannot improve the beam. Use another surface.pattern.feed (only a paraboloid "
-                   "focuses a plane wave), a lower frequency or more facets",
+                   "%s: gain: even at its target positions, the net loses %.3g dB in the direction of the beam, so "
+                   "there is no beam that this objective could improve. Use another surface.pattern.feed (a paraboloid "
+                   "focuses a plane wave, which gives no beam), a lower frequency or more facets",
                    where, loss_dB);
 }
 

@@ -12,18 +12,15 @@
 
 #include "base/clock.h"
 #include "base/path.h"
-#include "linalg/lapack.h"
 #include "store/provenance.h"
 #include "store/store_internal.h"
 #include "store/vtkhdf.h"
 
 #include <errno.h>
-#include <gsl/gsl_version.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* A publication is due when PUBLISH_RATIO times the duration of the last one has passed. Publishing then takes 2 % of
  * the run. At least PUBLISH_S must have passed, so that most short runs are published only at their beginning and their

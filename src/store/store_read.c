@@ -1,5 +1,5 @@
-/* Implements the reading calls of <hifdm/store.h> and of store_read.h. Sections: summary, scene,
- * shape, truss, the stored case, provenance. */
+/* Implements the reading calls of <hifdm/store.h> and of store_read.h. Sections: summary, scene, shape, truss, the
+ * stored case, provenance. */
 #include "store/store_read.h"
 
 #include "base/arena.h"

@@ -1,3 +1,4 @@
+/* Implements <hifdm/summary.h> without the JSON, and the words and groups of the stages. */
 #include <hifdm/summary.h>
 
 #include <hifdm/store.h>

@@ -1,12 +1,11 @@
-/* Writes a summary as one JSON object, stage by stage. Most members come from the lists
- * in <hifdm/summary.h> and <hifdm/result.h>. */
+/* Writes a summary as one JSON object, stage by stage. Most members come from the lists in <hifdm/summary.h> and
+ * <hifdm/result.h>. */
 #include <hifdm/summary.h>
 
 #include "base/json.h"
 #include "store/layout.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* ---- figures by the lists ---- */
 

@@ -15,7 +15,6 @@
 
 #include "base/elementary.h"
 #include "linalg/dense.h"
-#include "net/target_surface.h"
 #include "surface/facet_mesh.h"
 
 #include <math.h>

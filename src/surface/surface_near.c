@@ -7,7 +7,6 @@
  * Contents: a pose - rows of points - steps */
 #include "surface/surface_near.h"
 
-#include "base/arena.h"
 #include "base/elementary.h"
 #include "linalg/dense.h"
 #include "linalg/dot.h"

@@ -277,7 +277,7 @@ START_TEST(words_of_the_summary_are_explained)
     HIFDM(0, "explain", "give way");
     OUT("deflection (term, m)\n    Formerly \"gives way\", \"give way\".\n");
     HIFDM(0, "explain", "at bounds");
-    OUT("If no objective includes the positions of some nodes");
+    OUT("a wider range only moves these nodes farther");
     OUT("What to do: If only a few design variables are at bounds");
     HIFDM(2, "explain", "nonsenses");
 }

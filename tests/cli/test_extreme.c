@@ -17,7 +17,7 @@ static const struct {
     {"[-5,1]", "[1,1]", "modules: must be at least 1 and at most 2000, not -5\n"},
     /* few enough nodes, but their band matrix would need 4 GB per thread */
     {"[1,1]", "[800,800]",
-     "error: the band matrix with 641597 rows and half-bandwidth 801 is too large. Use fewer cells\n"},
+     "error: the band matrix with 641597 rows and half-bandwidth 801 is too large. Use fewer nodes\n"},
 };
 
 /* 10 s of processor time is 100 times what it takes, and far less than any of these nets would. */

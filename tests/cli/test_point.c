@@ -92,7 +92,7 @@ END_TEST
 START_TEST(what_is_of_no_point_is_told)
 {
     static const char beside[] =
-        "a front is not a single design, so hifdm computes load_cases and tolerance for the net after form-finding",
+        "a front is not a single design, so hifdm computes load cases and samples for the net after form-finding",
                       untaken[] =
                           ": no point of the Pareto front is selected, so hifdm uses the shape after form-finding, ";
     const char *c = file_with("d.yaml", NET OPTIMIZE PSI_AND_RATIO AS_BUILT), *front = temp("f.h5"),

@@ -312,8 +312,8 @@ START_TEST(rows_that_no_variable_reaches_are_named)
                                              "    - {figure: tension, set: all, bounds: [null, 90]}\n"
                                              "    - {figure: ratio, set: far, bounds: [1, 5]}\n");
     HIFDM(0, "run", path, "-o", temp("two.h5"));
-    ERRS("warning: %s:7:7: optimize.variables.1: this design variable has no effect at the initial design, because its "
-         "cables or the cables at its supports are slack\n",
+    ERRS("warning: %s:7:7: optimize.variables.1: this row has no effect at the initial design, because its "
+         "cables, or the cables at its supports, are slack\n",
          path);
     ERRS("warning: %s:9:7: optimize.objective.0: no design variable of this case changes objective_0_mass_far: all of "
          "its "
@@ -411,7 +411,8 @@ START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
     static const char *const what[] = {
         ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222, but the "
         "bound of boundary_ratio_cap is 10",
-        " are above boundary_ratio_cap 10. The initial design has 22.22. Raise optimize.boundary_ratio_cap, or widen "
+        " are above boundary_ratio_cap 10. The initial design has the ratio 22.22. Raise optimize.boundary_ratio_cap, "
+        "or widen "
         "the ranges and bounds of optimize.variables",
         "",
         " ratio of cable c4 to c3 is 22.2222, but the bound of boundary_ratio_cap is 10. Loosen the limits, or widen "};

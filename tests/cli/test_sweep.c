@@ -187,7 +187,7 @@ START_TEST(a_failed_point_stops_no_other)
     HIFDM(3, "sweep", path, "--dir", folder);
     OUT("2 points run");
     OUT("1 of them failed");
-    ERR("error: 1 points failed. 'hifdm status' lists the reasons");
+    ERR("error: 1 point failed. 'hifdm status' lists the reasons");
     HIFDM(0, "status", path, "--dir", folder);
     OUT("failed    1");
     OUT("form.max_iterations=2, form.pretension_N=8: form-finding did not converge in 2 iterations");
@@ -322,7 +322,7 @@ START_TEST(a_stopped_sweep_goes_on)
         code = end_by(&s, freeze_when(&s, is_in_the_middle, temp("s.d")) ? SIGTERM : SIGCONT);
     }
     ck_assert_int_eq(code, 75);
-    ck_assert(says(temp("err"), "missing points. Run the same command again to resume"));
+    ck_assert(says(temp("err"), ". Run the same command again to resume"));
     HIFDM(0, "status", path, "--dir", temp("s.d"));
     OUT("running   0");
     HIFDM(0, "sweep", path, "--dir", temp("s.d"));

@@ -83,7 +83,7 @@ START_TEST(net_beside_its_surface_is_refused)
     ERRS("error: %s:5:19: surface.focal_length_m: the inner nodes are not on the parabolic_cylinder with f = 4 m. The "
          "RMS height error of the inner nodes is 51.03 mm, and node 'n6', line 8 has the maximum error of 62.5 mm. The "
          "RMS height error is 51.03 mm for the parabolic_cylinder z = x^2/(4f), and 0 mm for the paraboloid z = (x^2 + "
-         "y^2)/(4f); give surface.kind: paraboloid\n",
+         "y^2)/(4f). Give surface.kind: paraboloid\n",
          path);
     HIFDM(2, "check", path);
     ERR("surface.focal_length_m: the inner nodes are not on the parabolic_cylinder");
@@ -91,14 +91,14 @@ START_TEST(net_beside_its_surface_is_refused)
     HIFDM(2, "check", path, "--set", "surface.kind=paraboloid", "--set", "surface.focal_length_m=4");
     ERR("error: --set surface.focal_length_m: the inner nodes are not on the paraboloid with f = 4 m. The RMS height "
         "error of the inner nodes is 51.03 mm");
-    ERR("give surface.kind: parabolic_cylinder\n");
+    ERR("Give surface.kind: parabolic_cylinder\n");
     path = grid_net(false, "  kind: auto\n  focal_length_m: 8\n"); /* neither: another focal length */
     HIFDM(2, "check", path);
-    ERR("its vertex is the origin, its axis z, its focal length this one\n");
+    ERR("The vertex of the target surface is the origin, and its axis is z\n");
     const char *small = file_with("s.yaml", SMALL_SCENE "surface:\n  kind: paraboloid\n");
     HIFDM(2, "check", small);
     ERRS("error: %s:4:9: surface.kind: the inner nodes are not on the paraboloid with f = 2 m. ", small);
-    ERR("give surface.kind: parabolic_cylinder\n");
+    ERR("Give surface.kind: parabolic_cylinder\n");
 }
 END_TEST
 
@@ -232,14 +232,13 @@ START_TEST(net_that_collapses_to_the_plane_of_its_supports_is_told)
 {
 #define BOWL "id,x_m,y_m,z_m,role,Fz_N\na,1,0,1,support,\nb,-1,0,1,support,\nc,0,1,1,support,\nd,0,-1,1,support,\n"
 #define STAR "id,i,j,group,law,value\nae,a,e,inner,tension,1\nbe,b,e,inner,tension,1\nce,c,e,inner,tension,1\n"
-#define FLAT                                                                                                           \
-    "warning: scene: all supports are in one plane, and no load, tie or strut holds the net away from the supports. "
+#define FLAT "warning: scene: all supports are in one plane, and no load, tie or strut holds the net away from there. "
     HIFDM(0, "run", net_with(BOWL "e,0,0,0.7,inner,\n", STAR "de,d,e,inner,tension,1\n"), "-o", temp("b.h5"), "--json");
-    ERR(FLAT "With any tensions, the net collapses to its supports, so the inner nodes are at least 300 mm RMS from "
+    ERR(FLAT "With any tensions, the net collapses there, so the inner nodes are at least 300 mm RMS from "
              "their target positions. Put supports on the surface, tie the net to another net, or add loads\n");
     EXPECT(out_as("b.json"), temp("b.h5"), "--", "near(a['form']['psi_m'], 0.3, 1e-9)",
-           "any('collapses to its supports' in w for w in a['warnings'])",
-           "'collapses to its supports' in attribute(b, 'warnings')");
+           "any('With any tensions, the net collapses there' in w for w in a['warnings'])",
+           "'With any tensions, the net collapses there' in attribute(b, 'warnings')");
     static const char *const other[][2] = {
         {BOWL "e,0,0,0.7,inner,-1\n", STAR "de,d,e,inner,tension,1\n"},
         {BOWL "e,0,0,0.7,inner,\nf,0,0,0,support,\n", STAR "de,d,e,inner,tension,1\nef,e,f,inner,tension,1\n"},

@@ -184,8 +184,6 @@ END_TEST
 
 /* ---- what is refused: test_config_faults.c has the exact messages; here nothing may crash or be accepted ---- */
 
-extern const char hf_config_help_text[];
-
 /* Counts a path in n_path of the only entry of keys.md that describes it. */
 static void check_help(const char *path, int n_path[])
 {
