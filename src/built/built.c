@@ -25,10 +25,9 @@ static hf_status refuse_cables(const char *where, const hf_scene *s, const hf_wo
     for (int e = 0; e < s->n_cable; e++)
         if (w->tension_N[e] < 0 && n++ == 0) first = e;
     if (n == 0) return status;
-    return hf_error(
-        messages, HF_BAD_CASE,
-        "%s: the as-built net cannot have struts, but %d cables are in compression, such as '%s' with %.3g N", where, n,
-        s->cable_id[first], w->tension_N[first]);
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: the as-built net cannot have struts, but %d cable%s in compression, such as '%s' with %.3g N",
+                    where, n, n == 1 ? " is" : "s are", s->cable_id[first], w->tension_N[first]);
 }
 
 /* Sets the resting positions of the supports: those of the design, less the displacement of the truss at

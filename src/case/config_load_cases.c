@@ -87,17 +87,17 @@ static hf_status heat_cables(const maker *q, int row)
     if (n_wild)
         hf_error(
             q->messages, HF_BAD_CASE,
-            "%s: %d cables would change their lengths by more than the fraction %g. For example, the length of cable "
+            "%s: the lengths of %d cable%s would change by more than the fraction %g. For example, the length of cable "
             "'%s' would change by the fraction %.3g at %.6g K. Check this temperature and the value expansion_per_K",
-            hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_wild, LARGEST_STRAIN,
-            scene->cable_id[wild], q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild],
-            load_case->rise_K[wild]);
+            hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_wild, n_wild == 1 ? "" : "s",
+            LARGEST_STRAIN, scene->cable_id[wild],
+            q->load_cases->material.expansion_per_K[wild] * load_case->rise_K[wild], load_case->rise_K[wild]);
     if (n_unknown == 0) return n_wild ? HF_BAD_CASE : HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
-                    "%s: %d cables have no thermal expansion coefficient, such as cable '%s'. In the list `cables`, "
+                    "%s: %d cable%s no thermal expansion coefficient, such as cable '%s'. In the list `cables`, "
                     "give expansion_per_K for these cables (0 for cables that do not expand)",
                     hf_config_place(q->c, where, "load_cases.%d.%s", row, temperature_key(s)), n_unknown,
-                    scene->cable_id[unknown]);
+                    n_unknown == 1 ? " has" : "s have", scene->cable_id[unknown]);
 }
 
 hf_status hf_config_demand_expansion(const hf_case *c, const hf_truss *t, hf_part part, const char *where,
@@ -167,10 +167,10 @@ static hf_status weigh(const maker *q, int row)
         if (isnan(q->load_cases->material.mass_kg_per_m[e]) && n_unknown++ == 0) unknown = e;
     if (n_unknown == 0) return HF_OK;
     return hf_error(q->messages, HF_BAD_CASE,
-                    "%s: %d cables have no mass per length, such as cable '%s'. In the list `cables`, give "
+                    "%s: %d cable%s no mass per length, such as cable '%s'. In the list `cables`, give "
                     "mass_kg_per_m for these cables (0 for cables without mass)",
                     hf_config_place(q->c, where, "load_cases.%d.gravity_m_per_s2", row), n_unknown,
-                    q->scene->cable_id[unknown]);
+                    n_unknown == 1 ? " has" : "s have", q->scene->cable_id[unknown]);
 }
 
 /* ---- forces and displacements ---- */
@@ -261,9 +261,9 @@ static hf_status check_EA(const maker *q)
     if (n == 0) return HF_OK;
     return hf_error(
         q->messages, HF_BAD_CASE,
-        "%s: %d cables have no stiffness EA, such as '%s', but load cases of the as-built net need this stiffness. Add "
+        "%s: %d cable%s no stiffness EA, such as '%s', but load cases of the as-built net need this stiffness. Add "
         "the keys scene.EA_inner_N and scene.EA_boundary_N, or add the column EA_N to the table of an imported net",
-        hf_config_place(q->c, where, "load_cases.0.name"), n, s->cable_id[first]);
+        hf_config_place(q->c, where, "load_cases.0.name"), n, n == 1 ? " has" : "s have", s->cable_id[first]);
 }
 
 typedef hf_status row_step(const maker *, int);

@@ -67,8 +67,9 @@ hf_status hf_cable_demand_EA(const hf_scene *s, const char *where, const char *w
     for (int g = 0; g < 2; g++)
         if (n[g])
             hf_error(messages, HF_BAD_CASE,
-                     "%s: %d %s cables have no stiffness EA, which %s. One of these cables is '%s'. Add the key "
+                     "%s: %d %s cable%s no stiffness EA, which %s. One of these cables is '%s'. Add the key "
                      "scene.EA_%s_N, or add the column EA_N to the table of an imported net%s",
-                     where, n[g], hf_group_word[g], who_needs, s->cable_id[first[g]], hf_group_word[g], then);
+                     where, n[g], hf_group_word[g], n[g] == 1 ? " has" : "s have", who_needs, s->cable_id[first[g]],
+                     hf_group_word[g], then);
     return n[0] + n[1] ? HF_BAD_CASE : HF_OK;
 }

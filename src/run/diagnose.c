@@ -128,9 +128,10 @@ void hf_problem_warn(const hf_problem *p, const char *stage, hf_workspace *w, co
     if (r->n_loaded_chain) {
         name_loaded_chains(p, w, &chains);
         hf_warning(messages,
-                   "%d straight chains of length-controlled cables carry a lateral load that no finite tension can "
+                   "%d straight chain%s of length-controlled cables carr%s a lateral load that no finite tension can "
                    "balance: %s. The boundary tensions therefore depend on the iteration at which hifdm stopped",
-                   r->n_loaded_chain, close_names(&chains));
+                   r->n_loaded_chain, r->n_loaded_chain == 1 ? "" : "s", r->n_loaded_chain == 1 ? "ies" : "y",
+                   close_names(&chains));
     }
     name_loose(p, stage, w, r, messages);
     for (int e = 0; r->n_slack && e < m->n_cable; e++)
@@ -247,10 +248,11 @@ static hf_status explain_chains(const hf_problem *p, hf_workspace *w, const hf_f
     }
     name_loaded_chains(p, w, &chains);
     return hf_error(messages, r->status,
-                    "ill-posed: %d straight chains of length-controlled cables carry a lateral load that no finite "
+                    "ill-posed: %d straight chain%s of length-controlled cables carr%s a lateral load that no finite "
                     "tension can balance: %s. Give these cables a sag (scene.parabolic_cylinder.scallop, longer L*) or "
                     "another law, or support their nodes",
-                    r->n_loaded_chain, close_names(&chains));
+                    r->n_loaded_chain, r->n_loaded_chain == 1 ? "" : "s", r->n_loaded_chain == 1 ? "ies" : "y",
+                    close_names(&chains));
 }
 
 hf_status hf_problem_explain(hf_problem *p, hf_messages *messages)

@@ -82,8 +82,9 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
         if (isnan(t->expansion_per_K[e]) && n++ == 0) first = e;
     if (n == 0) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: %d cables have no expansion_per_K, such as '%s'. Add this value to a row of the list `cables`",
-                    hf_config_place(&p->settings, place, "tolerance.sigma_temperature_K"), n, s->cable_id[first]);
+                    "%s: %d cable%s no expansion_per_K, such as '%s'. Add this value to a row of the list `cables`",
+                    hf_config_place(&p->settings, place, "tolerance.sigma_temperature_K"), n,
+                    n == 1 ? " has" : "s have", s->cable_id[first]);
 }
 
 /* Checks that the parts of the truss in tolerance.truss exist and have an expansion. Returns HF_OK, or the status of
@@ -149,8 +150,8 @@ static hf_status check_struts(const hf_problem *p, hf_messages *messages)
         if (hf_law_has(s->law[e], HF_LAW_MAY_PUSH) && s->target[e] < 0 && n++ == 0) first = e;
     if (n == 0) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
-                    "%s: the as-built net cannot have struts, but %d cables are in compression, such as '%s'",
-                    place_section(&p->settings, place), n, s->cable_id[first]);
+                    "%s: the as-built net cannot have struts, but %d cable%s in compression, such as '%s'",
+                    place_section(&p->settings, place), n, n == 1 ? " is" : "s are", s->cable_id[first]);
 }
 
 static hf_status make_material(const hf_problem *p, hf_material *t, hf_messages *messages)

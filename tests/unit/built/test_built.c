@@ -61,7 +61,7 @@ START_TEST(two_cables_in_line)
                      HF_BAD_CASE);
     ck_assert_str_eq(
         messages.text,
-        "error: x.yaml: 1 inner cables have no stiffness EA, which the as-built net needs. One of these cables is "
+        "error: x.yaml: 1 inner cable has no stiffness EA, which the as-built net needs. One of these cables is "
         "'c1'. Add the key scene.EA_inner_N, or add the column EA_N to the table of an imported net\n");
     hf_messages_free(&messages);
     hf_built_free(&built);

@@ -159,7 +159,7 @@ static const struct {
      "error: c.yaml:6:30: load_cases.0.temperature_K: 163 cables have no thermal expansion coefficient, such as cable "
      "'f0_0-f1_0'. In the list `cables`, give expansion_per_K for these cables (0 for cables that do not expand)\n"},
     {NET "cables:\n  - {expansion_per_K: 1e-3}\nload_cases:\n  - {name: a, temperature_K: -2000}\n", "",
-     "error: c.yaml:8:30: load_cases.0.temperature_K: 163 cables would change their lengths by more than the fraction "
+     "error: c.yaml:8:30: load_cases.0.temperature_K: the lengths of 163 cables would change by more than the fraction "
      "0.1. For example, the length of cable 'f0_0-f1_0' would change by the fraction -2 at -2000 K. Check this "
      "temperature and the value expansion_per_K\n"},
     {NET "cables:\n  - {set: front, mass_kg_per_m: 1}\nload_cases:\n  - {name: a, gravity_m_per_s2: 1}\n", "",
