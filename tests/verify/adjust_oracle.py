@@ -135,10 +135,10 @@ def estimate(net, which, target):
 
 
 def check(cut, jig, folder, measured, answer):
-    net, theory = Net(cut, jig, folder), {n["id"]: n for n in rows(f"{folder}/nodes.csv")}
+    net, target_position = Net(cut, jig, folder), {n["id"]: n for n in rows(f"{folder}/nodes.csv")}
     said = json.load(open(answer))
     aimed = "{}_m" if said["aim"] == "design" else "{}0_m"
-    wanted = np.array([[float(theory[i][aimed.format(c)]) for c in "xyz"] for i in net.id])
+    wanted = np.array([[float(target_position[i][aimed.format(c)]) for c in "xyz"] for i in net.id])
     index = {name: i for i, name in enumerate(net.id)}
     table = rows(measured)
     which = np.array([index[r["id"]] for r in table])

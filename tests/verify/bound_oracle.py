@@ -22,7 +22,7 @@ import numpy as np
 
 getcontext().prec = 50
 TENSION, LENGTH, FORCE_DENSITY, ELASTIC = range(4)
-REASON = ["none", "proven", "struts", "truss", "no_matrix", "not_definite", "not_contracting", "slack_or_taut",
+REASON = ["none", "certified", "struts", "truss", "no_matrix", "not_definite", "not_contracting", "slack_or_taut",
           "dependent_lengths", "loose"]
 STOPS = 16
 
@@ -34,7 +34,7 @@ class Net:
         self.n_moving = self.n_free + int(n_truss)
         self.flexibility = take(int(9 * n_truss * n_truss)).reshape(int(3 * n_truss), int(3 * n_truss))
         self.exact_flexibility = [[Decimal(v) for v in row] for row in self.flexibility.tolist()]
-        self.theory = take(3 * self.n_node).reshape(3, -1).T
+        self.target_position = take(3 * self.n_node).reshape(3, -1).T
         self.load = take(3 * self.n_node).reshape(3, -1).T
         self.inner = take(int(n_inner)).astype(int)
         cable = take(5 * n_cable).reshape(-1, 5)
@@ -47,7 +47,7 @@ class Net:
         self.kept = keep
         self.end, self.law = cable[keep, :2].astype(int), cable[keep, 2].astype(int)
         self.target, self.EA = cable[keep, 3], cable[keep, 4]
-        self.rest = np.linalg.norm(self.theory[self.end[:, 1]] - self.theory[self.end[:, 0]], axis=1)
+        self.rest = np.linalg.norm(self.target_position[self.end[:, 1]] - self.target_position[self.end[:, 0]], axis=1)
         self.multiplier = (self.law == LENGTH) | (self.law == ELASTIC)
         self.flex = np.where(self.law == ELASTIC, self.target / np.where(self.law == ELASTIC, self.EA, 1), 0)
 
@@ -62,7 +62,7 @@ class Net:
         u = d / l[:, None]
         np.add.at(force, self.end[:, 0], pull[:, None] * u)
         np.add.at(force, self.end[:, 1], -pull[:, None] * u)
-        gap = self.flexibility @ force[self.n_free:self.n_moving].ravel() - (x - self.theory)[
+        gap = self.flexibility @ force[self.n_free:self.n_moving].ravel() - (x - self.target_position)[
             self.n_free:self.n_moving].ravel()
         return np.vstack((force[:self.n_free], gap.reshape(-1, 3))), l - self.target - self.flex * T, u, l, pull
 
@@ -90,7 +90,7 @@ class Net:
         b = [v for row in force[self.n_free:self.n_moving] for v in row]
         for i in range(self.n_free, self.n_moving):
             for c in range(3):
-                r = x[i][c] - Decimal(float(self.theory[i, c]))
+                r = x[i][c] - Decimal(float(self.target_position[i, c]))
                 row = self.exact_flexibility[3 * (i - self.n_free) + c]
                 force[i][c] = sum((f * v for f, v in zip(row, b)), -r)
         return force[:self.n_moving], over
@@ -187,7 +187,8 @@ class Net:
         return None
 
     def psi(self, X):
-        square = sum((X[i][c] - Decimal(float(self.theory[i, c]))) ** 2 for i in self.inner.tolist() for c in range(3))
+        square = sum((X[i][c] - Decimal(float(self.target_position[i, c]))) ** 2
+                     for i in self.inner.tolist() for c in range(3))
         return (square / len(self.inner)).sqrt()
 
     def error(self, X, x):
@@ -242,10 +243,10 @@ def main():
                 if psi_error > 0:
                     psi_ratios.append(float(Decimal(float(psi_bound)) / psi_error))
     shapes = sum(reasons.values()) - reasons["no shape"]
-    share = reasons["proven"] / max(shapes, 1)
+    share = reasons["certified"] / max(shapes, 1)
     median = float(np.median(ratios)) if ratios else np.nan
-    print(f"  {n_net} nets, {shapes} shapes: {100 * share:.1f} % proven, {low} bounds below the error; "
-          f"{unknown} proven shapes without an oracle")
+    print(f"  {n_net} nets, {shapes} shapes: {100 * share:.1f} % certified, {low} bounds below the error; "
+          f"{unknown} certified shapes without an oracle")
     print("  " + ", ".join(f"{name} {n}" for name, n in reasons.most_common()))
     print("  converged shapes: " + ", ".join(f"{name} {n}" for name, n in converged.most_common()))
     for kind in sorted(per_kind):

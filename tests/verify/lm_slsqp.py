@@ -26,26 +26,26 @@ class Net:
         n = int(random.integers(4, 6))
         self.pretension_N = 10.0
         at = np.arange(n)
-        self.theory = np.array([(x, y, 0.02 * ((x - n / 2) ** 2 + 0.5 * y**2)) for y in at for x in at], float)
-        self.theory[:, :2] += random.uniform(-0.08, 0.08, (n * n, 2))
+        self.target_position = np.array([(x, y, 0.02 * ((x - n / 2) ** 2 + 0.5 * y**2)) for y in at for x in at], float)
+        self.target_position[:, :2] += random.uniform(-0.08, 0.08, (n * n, 2))
         edge = {i for i in range(n * n) if i % n in (0, n - 1) or i // n in (0, n - 1)}
         corner = {0, n - 1, n * n - n, n * n - 1}
         self.role = ["support" if i in corner else "edge" if i in edge else "inner" for i in range(n * n)]
         pairs = [(i, i + 1) for i in range(n * n) if i % n < n - 1] + [(i, i + n) for i in range(n * n - n)]
         self.end = np.array(pairs)
         self.is_boundary = np.array([a in edge and b in edge for a, b in pairs])
-        self.load = np.zeros_like(self.theory)
+        self.load = np.zeros_like(self.target_position)
         self.load[:, 2] = np.where([r == "inner" for r in self.role], random.uniform(-1.5, 0.5, n * n), 0)
         # Edges are scalloped, so that finite tensions on them carry the pull of the net.
-        middle = self.theory.mean(axis=0)
+        middle = self.target_position.mean(axis=0)
         for i in edge - corner:
             row, column = i // n, i % n
             part = (column if row in (0, n - 1) else row) / (n - 1)
-            inwards = np.array([0, 1] if row in (0, n - 1) else [1, 0]) * np.sign(middle - self.theory[i])[:2]
-            self.theory[i, :2] += 0.5 * (n - 1) * part * (1 - part) * inwards
+            inwards = np.array([0, 1] if row in (0, n - 1) else [1, 0]) * np.sign(middle - self.target_position[i])[:2]
+            self.target_position[i, :2] += 0.5 * (n - 1) * part * (1 - part) * inwards
         self.free = np.array([r != "support" for r in self.role])
         self.inner = np.array([r == "inner" for r in self.role])
-        self.length = np.linalg.norm(np.diff(self.theory[self.end], axis=1)[:, 0], axis=1)
+        self.length = np.linalg.norm(np.diff(self.target_position[self.end], axis=1)[:, 0], axis=1)
         self.boundary = np.flatnonzero(self.is_boundary)
         self.moving = np.repeat(self.free, 3)  # components that give way
         self.K = np.zeros((3 * n * n, 3 * n * n))  # N/m, of what holds them
@@ -53,7 +53,7 @@ class Net:
     def write(self, folder, settings):
         with open(os.path.join(folder, "nodes.csv"), "w", encoding="utf-8") as file:
             file.write("id,x_m,y_m,z_m,role,Fx_N,Fy_N,Fz_N\n")
-            for i, (place, force) in enumerate(zip(self.theory, self.load)):
+            for i, (place, force) in enumerate(zip(self.target_position, self.load)):
                 file.write(f"n{i},{','.join(map(repr, map(float, place)))},{self.role[i]},"
                            f"{','.join(map(repr, map(float, force)))}\n")
         with open(os.path.join(folder, "cables.csv"), "w", encoding="utf-8") as file:
@@ -68,13 +68,13 @@ class Net:
 
     def energy(self, density, x):
         l = np.linalg.norm(x[self.end[:, 1]] - x[self.end[:, 0]], axis=1)
-        off, of_nets = (x - self.theory).ravel(), self.pretension_N * l[~self.is_boundary].sum()
+        off, of_nets = (x - self.target_position).ravel(), self.pretension_N * l[~self.is_boundary].sum()
         return of_nets + density @ l[self.boundary] ** 2 / 2 - np.sum(self.load * x) + off @ self.K @ off / 2
 
     def solve(self, density, start):
         """Solves for the equilibrium by Newton's method, where boundary cable k has the force density density[k].
         Returns the shape, the boundary tensions, and the derivatives of both with respect to the force densities."""
-        x, n, b = start.copy(), len(self.theory), self.boundary
+        x, n, b = start.copy(), len(self.target_position), self.boundary
         dof = np.flatnonzero(self.moving)
         for _ in range(200):
             vector = x[self.end[:, 1]] - x[self.end[:, 0]]
@@ -89,7 +89,7 @@ class Net:
                 K = T[e] / l[e] * (np.eye(3) - uu) + along[e] * uu
                 for row, column, sign in ((i, i, 1), (j, j, 1), (i, j, -1), (j, i, -1)):
                     H[3 * row:3 * row + 3, 3 * column:3 * column + 3] += sign * K
-            right = (force.ravel() - self.K @ (x - self.theory).ravel())[dof]
+            right = (force.ravel() - self.K @ (x - self.target_position).ravel())[dof]
             H = (H + self.K)[np.ix_(dof, dof)]
             if np.abs(right).max() < 1e-10:
                 break
@@ -115,7 +115,7 @@ class Net:
         return x, T[b], move, rate
 
     def psi(self, shape):
-        return np.sqrt(np.mean(np.sum((shape - self.theory)[self.inner] ** 2, axis=1)))
+        return np.sqrt(np.mean(np.sum((shape - self.target_position)[self.inner] ** 2, axis=1)))
 
 
 def remember(net, x):
@@ -150,7 +150,7 @@ def improve(net, density, low, high, cap, is_density, x):
 
     def psi2(v):
         shape, _, move, _ = at(v)
-        f = (shape - net.theory)[net.inner]
+        f = (shape - net.target_position)[net.inner]
         slope = 2e4 * np.einsum("ic,ick->k", f, move[net.inner]) / len(f)
         return 1e4 * np.mean(np.sum(f**2, axis=1)), np.append(slope, 0)
 
@@ -191,8 +191,8 @@ def compare(program, folder, random):
     psi, own = float(refined["psi_m"]), net.psi(shape)
     low, high = np.maximum(first - reach, 0.1), first + reach
     gain = (psi - improve(net, density, low, high, cap, is_density, shape)) / psi
-    from_base = improve(net, base, low, high, cap, is_density, net.theory) / psi - 1
-    start = net.psi(net.solve(base, net.theory)[0])
+    from_base = improve(net, base, low, high, cap, is_density, net.target_position) / psi - 1
+    start = net.psi(net.solve(base, net.target_position)[0])
     given = "rows of" if by_rows else "rule"
     print(f"{len(T)} pretensions, {given} {rule}, cap {cap:.4f}: psi {1e3 * start:.6f} -> {1e3 * psi:.6f} mm in "
           f"{refined['steps']} steps, ratio {T.max() / T.min():.6f}; SLSQP gains {gain:.1e} "

@@ -26,7 +26,7 @@ class OnMasts(Net):
     def __init__(self, random):
         super().__init__(random)
         self.corner = np.flatnonzero(~self.free)
-        self.top = self.theory[self.corner]
+        self.top = self.target_position[self.corner]
         self.pair = [(0, 1), (1, 3), (3, 2), (2, 0)]
         k = np.zeros((24, 24))
         for i, top in enumerate(self.top):
@@ -68,13 +68,13 @@ class Wanted:
     def goals(self, solved):
         """Returns both objectives and their derivatives with respect to the force densities."""
         net, (x, T, move, rate) = self.net, solved
-        off = (x - net.theory)[net.inner]
+        off = (x - net.target_position)[net.inner]
         psi = np.sqrt(np.mean(np.sum(off**2, axis=1)))
         psi_rate = np.einsum("ic,ick->k", off, move[net.inner]) / len(off) / psi
         if self.target is not None:
             value = np.sqrt(np.mean((T - self.target) ** 2))
             return psi, value, psi_rate, (T - self.target) @ rate / len(T) / value
-        d = (x - net.theory)[net.corner]
+        d = (x - net.target_position)[net.corner]
         size = np.linalg.norm(d, axis=1)
         size_rate = np.einsum("ic,ick->ik", d, move[net.corner]) / size[:, None]
         value = np.sum(size**16) ** (1 / 16)
@@ -135,16 +135,16 @@ def compare(program, folder, random, on_truss):
     solved = net.solve(design, shape)
     psi, value, _, _ = wanted.goals(solved)
     merit, own = float(refined["merit"]), np.sqrt(wanted.merit2(solved)[0])
-    largest = np.linalg.norm((solved[0] - net.theory)[net.corner], axis=1).max() if on_truss else value
+    largest = np.linalg.norm((solved[0] - net.target_position)[net.corner], axis=1).max() if on_truss else value
     low, high = base * (1 - part), base * (1 + part)
     slack = wanted.limits(solved, solved[1].min())
-    start = np.sqrt(wanted.merit2(net.solve(base, net.theory))[0])
+    start = np.sqrt(wanted.merit2(net.solve(base, net.target_position))[0])
     try:
         gain = (merit - improve(wanted, design, low, high, solved[0])) / merit
     except ArithmeticError:
         return None  # SLSQP tries a design in which nodes run together, and says nothing of this one
     try:
-        from_base = improve(wanted, base, low, high, net.theory) / merit - 1
+        from_base = improve(wanted, base, low, high, net.target_position) / merit - 1
     except ArithmeticError:
         from_base = np.inf
     n_held = (slack < 1e-6).sum() - bool(cap)  # the least tension of a ratio is at itself

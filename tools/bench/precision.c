@@ -164,7 +164,7 @@ static double sample(run *r, const char *section, double tolerance)
     return r->error_m;
 }
 
-/* The proven bounds of the shapes that Newton found and the estimates, the largest of all designs as of the error; NaN
+/* The error bounds of the shapes that Newton found and the estimates, the largest of all designs as of the error; NaN
  * when one has none. */
 static void sample_bound(run *r, double tolerance)
 {

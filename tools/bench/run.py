@@ -39,7 +39,7 @@ PICTURE = {
     "chord": ("hifdm, population of 50", "line"),
     "paper's stop": ("the paper's stop", "mark"),
 }
-BOUND = "its proven bound"
+BOUND = "its error bound"
 BUILT_NET = "21x25 f=7.2 as built"
 BUILT_MM = ["0.01", "0.03", "0.1", "0.5"]  # errors of cut lengths of the as-built net
 PATTERN_DEG = ["2", "5"]  # ends of the 721 angles of the far field
