@@ -68,8 +68,8 @@ END_TEST
 START_TEST(a_net_without_the_symmetry_is_refused)
 {
     HIFDM(2, "run", net_with(nodes, cables), NOWHERE, "--set", "optimize.symmetry=xy");
-    ERR("error: --set optimize.symmetry: the net is not symmetric about the plane y = 1.5 m. For 4 cables, no mirror "
-        "image has the same roles, loads, group, law and target: c1, c,2, c3, c4\n");
+    ERR("error: --set optimize.symmetry: the net is not symmetric about the plane y = 1.5 m. 4 cables have no mirror "
+        "image with the same ends, roles, loads, group, law and target: c1, c,2, c3, c4\n");
     ck_assert(!is_there(temp("nowhere.h5")));
     HIFDM(0, "check", net_with(nodes, cables), "--set", "optimize.symmetry=auto");
     OUT("symmetry: auto, plane x; 2 independent variables of 3\n");

@@ -176,7 +176,7 @@ START_TEST(a_mesh_without_shape_is_not_exported)
           file_with("h.yaml", SMALL_SCENE "surface: {mesh_tension_N_per_m: 500, frequencies_Hz: [1e10], pattern: "
                                           "{n_theta: 11, feed: {cos_power: 1}}}\n"),
           "-o", out);
-    ERR("so the facets have neither errors nor a far field");
+    ERR("so hifdm reports neither facet errors nor a far field");
     OUT("gain loss at 10 GHz: - dB for a fixed feed, - dB after best fit");
     HIFDM(2, "export", out, "--rf", rf);
     ERR("pillows of the form-finding shape are unknown, because the mesh pulls on a cable");

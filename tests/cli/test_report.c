@@ -212,7 +212,7 @@ START_TEST(truss_is_shown_when_there_is_one)
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nh5py.File(sys.argv[1], 'r+')['truss/member/end'][2, 1] = 132", out);
     HIFDM(5, "report", out, "-o", temp("t.html"), "--force");
-    ERR("t.h5: this file is damaged, because the dataset /truss/member/end refers to a missing node");
+    ERR("t.h5: this file is damaged, because the data set /truss/member/end refers to a missing node");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['truss/member/end']; f['truss/member/end'] = "
           "'pinned'",
@@ -293,12 +293,12 @@ START_TEST(merged_study_is_a_page_of_points)
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); del f['points/id'], f['points/input/x']", merged);
     HIFDM(5, "report", merged, "-o", page, "--force");
-    ERR("s.h5: this file is damaged, because the dataset /points/id does not contain every point");
+    ERR("s.h5: this file is damaged, because the data set /points/id does not contain every point");
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(), make_study, merged);
     SHELL(0, "\"$1\" -c \"$2\" \"$3\"", python_program(),
           "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+'); f['points/status'][1] = -1", merged);
     HIFDM(5, "report", merged, "-o", page, "--force");
-    ERR("s.h5: this file is damaged, because the dataset /points/status");
+    ERR("s.h5: this file is damaged, because the data set /points/status");
 }
 END_TEST
 
