@@ -101,7 +101,7 @@ static hf_status read_design(const hf_options *o, hf_problem *p, hf_messages *me
     const hf_export_request request = {.file = o->result, .stage = o->stage};
     hf_status status = hf_export_read(&request, HF_EXPORT_SHAPE, &stored, messages);
     if (status == HF_OK) status = compare(o, p, &stored, messages);
-    if (status == HF_OK && !o->stage) hf_export_warn_of_front(o->result, &stored.summary, false, messages);
+    if (status == HF_OK && !o->stage) hf_export_warn_of_shape(o->result, &stored.summary, false, messages);
     if (status == HF_OK) take_shape(&stored, p);
     hf_export_free(&stored);
     return status;

@@ -74,7 +74,7 @@ static hf_status command_export(const hf_options *o, FILE *file, hf_messages *me
         if (is_new[i]) rmdir(o->export_to[i]); /* a folder that was made for files that failed */
     /* A format that writes every shape also writes their names. */
     if (status == HF_OK && has_one_shape && !o->stage)
-        hf_export_warn_of_front(o->file, &stored.summary, o->load_case, messages);
+        hf_export_warn_of_shape(o->file, &stored.summary, o->load_case, messages);
     hf_export_free(&stored);
     return status;
 }

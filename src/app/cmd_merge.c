@@ -11,6 +11,11 @@ static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *mes
     hf_points points;
     hf_status status = hf_study_files_read(o, true, folder, &study, &points, messages);
     if (status == HF_OK) status = hf_study_files_name(o->output, o->file, ".h5", output, messages);
+    if (status == HF_OK && points.count[HF_POINT_OUTDATED] && !o->force)
+        status = hf_error(messages, HF_EXISTS,
+                          "%s: %d points are outdated, because the base case has changed since. Run 'hifdm sweep %s "
+                          "--retry outdated' first, or use --force to merge without these points",
+                          folder, points.count[HF_POINT_OUTDATED], o->file);
     if (status == HF_OK) status = hf_merge(&study, folder, &points, output, o->force, messages);
     if (status == HF_OK && !o->quiet)
         hf_print_line(file, "%s: %d points, %d of them done, %d failed", output, points.n_point,

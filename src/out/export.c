@@ -110,8 +110,13 @@ hf_status hf_export_read_truss(const char *file, const char *load_case, hf_truss
     return hf_store_read_load_case_truss(file, load_case, truss, state, messages);
 }
 
-void hf_export_warn_of_front(const char *file, const hf_summary *s, bool is_load_case, hf_messages *messages)
+void hf_export_warn_of_shape(const char *file, const hf_summary *s, bool is_load_case, hf_messages *messages)
 {
+    if (!s->finished && !is_load_case)
+        hf_warning(messages,
+                   "%s: this run is unfinished, so the exported shape is that of the %s. Run the same command again to "
+                   "resume the run",
+                   file, shape_word[hf_store_result_stage(s)]);
     int point = s->front ? hf_front_suggested(s->front) : 0;
     bool is_end = !is_load_case && hf_store_result_stage(s) != HF_STAGE_FORM;
     if (!point) return;

@@ -81,9 +81,10 @@ bool hf_export_has_truss(const hf_export_request *request, const hf_summary *sum
 hf_status hf_export_read_truss(const char *file, const char *load_case, hf_truss *truss, hf_carrier_state *state,
                                hf_messages *messages);
 
-/* Warns when the result `file` has a Pareto front from which no point was taken. The exported shape is then an end of
- * the front, or belongs to the form-finding. Load cases always belong to the form-finding. */
-void hf_export_warn_of_front(const char *file, const hf_summary *summary, bool is_load_case, hf_messages *messages);
+/* Warns when the result `file` is unfinished, and when it has a Pareto front from which no point was taken. The
+ * exported shape is then an end of the front, or belongs to the form-finding. Load cases always belong to the
+ * form-finding. */
+void hf_export_warn_of_shape(const char *file, const hf_summary *summary, bool is_load_case, hf_messages *messages);
 
 /* hf_export_claim checks that `path` may be written. It returns HF_EXISTS with a message when `path` is request->file,
  * or when it exists and request->force is false. It returns HF_IO when `path` is not an ordinary file.

@@ -222,7 +222,8 @@ static void print_search(const hf_summary *s, bool is_result, FILE *f)
         return;
     }
     bool is_ga = !strcmp(hf_summary_algorithm(s, HF_STAGE_SEARCH), "ga");
-    print_figures(s, "search", &s->stage[HF_STAGE_SEARCH].result, s->search.n_at_lower + s->search.n_at_upper, f);
+    int n_at_bound = s->finished ? s->search.n_at_lower + s->search.n_at_upper : -1; /* counted at the end */
+    print_figures(s, "search", &s->stage[HF_STAGE_SEARCH].result, n_at_bound, f);
     fprintf(f, "  %s%s: ", is_result ? "the result, " : "", is_ga ? "GA" : "NSGA-II");
     hf_print_generations(&s->search, f);
     if (s->search.infeasible)

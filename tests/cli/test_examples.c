@@ -245,8 +245,8 @@ START_TEST(recipe_for_a_net_of_ones_own_works)
                                  "sys.exit(subprocess.run(['sh', '-euc', commands]).returncode)\n";
     const char *folder = temp("here");
     SHELL(0, "mkdir -p \"$1\"", folder);
-    file_with("here/nodes.csv", recipe_nodes);
-    file_with("here/cables.csv", recipe_cables);
+    file_with("here/net_nodes.csv", recipe_nodes);
+    file_with("here/net_cables.csv", recipe_cables);
     SHELL(0, "cd \"$1\" && PATH=$(dirname \"$0\"):$PATH OMP_WAIT_POLICY=passive \"$2\" \"$3\" \"$4\"", folder,
           python_program(), file_with("follow.py", follow), keep(source_path("README.md")));
     SHELL(0, "cd \"$1\" && wc -c net.h5 net.html net/nodes.csv net/search.hdf cut.csv", folder);

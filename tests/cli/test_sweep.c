@@ -255,6 +255,10 @@ START_TEST(results_of_another_base_case_are_not_mixed_in)
     ERR("the base case has changed since 4 points were run");
     HIFDM(0, "status", path, "--dir", folder);
     OUT("outdated  4");
+    HIFDM(5, "merge", path, "--dir", folder, "-o", temp("merged.h5"));
+    ERR("4 points are outdated, because the base case has changed since. Run 'hifdm sweep ");
+    ck_assert(!is_there(temp("merged.h5")));
+    HIFDM(0, "merge", path, "--dir", folder, "-o", temp("merged.h5"), "--force");
     HIFDM(0, "sweep", path, "--dir", folder, "--retry", "outdated,missing");
     OUT("4 points run");
     HIFDM(0, "status", path, "--dir", folder);

@@ -72,11 +72,37 @@ START_TEST(an_observer_is_told_each_phase)
 }
 END_TEST
 
+static void stop_in_samples(void *context, const hf_run_progress *now)
+{
+    if (now->phase == HF_RUN_TOLERANCE && !now->is_last) *(volatile sig_atomic_t *)context = 1;
+}
+
+/* The message must not repeat how far the refinement came, which has ended. */
+START_TEST(a_stop_in_the_samples_is_not_one_of_the_refinement)
+{
+    static hf_summary s;
+    volatile sig_atomic_t stop = 0;
+    char output[HF_OUTPUT_SIZE];
+    hf_messages messages = {0};
+    write_file(temp_path("case.yaml"), case_text);
+    hf_run_request request = {
+        .input.case_path = temp_path("case.yaml"),
+        .output.path = temp_path("run.h5"),
+        .control = {
+            .threads = 1, .stop_requested = &stop, .observer = stop_in_samples, .observer_context = (void *)&stop}};
+    ck_assert_int_eq(hf_run_case(&request, &s, output, &messages), HF_INTERRUPTED);
+    ck_assert_msg(strstr(messages.text, "the run was interrupted. Run the same") != NULL, "%s", messages.text);
+    hf_messages_free(&messages);
+    hf_summary_free(&s);
+}
+END_TEST
+
 Suite *suite_unit_run(void)
 {
     Suite *suite = suite_create("unit/run/run");
     TCase *tcase = tcase_create("progress");
     tcase_add_test(tcase, an_observer_is_told_each_phase);
+    tcase_add_test(tcase, a_stop_in_the_samples_is_not_one_of_the_refinement);
     suite_add_tcase(suite, tcase);
     return suite;
 }
