@@ -1,11 +1,13 @@
 /* `hifdm report` shows a result, two of them side by side, or a merged study as one HTML page. */
-#include "app/options.h"
+#include "app/output.h"
 
 #include "out/report.h"
 
 static hf_status command_report(const hf_options *o, FILE *file, hf_messages *messages)
 {
     const hf_export_request request = {.file = o->file, .output = o->output, .force = o->force, .said = file};
+    HF_TRY(hf_output_refuse_case(o->file, messages));
+    if (o->second) HF_TRY(hf_output_refuse_case(o->second, messages));
     return hf_report(&request, o->second, messages);
 }
 

@@ -1,25 +1,10 @@
 /* `hifdm show` prints the summary of a result file, or the table of a merged study. */
 #include "app/output.h"
 
-#include "base/path.h"
-#include "case/study.h"
 #include "out/print_study.h"
 #include <hifdm/store.h>
 
-#include <string.h>
 #include <unistd.h>
-
-/* Refuses a file that is a case or a study by its name, and prints which command to use. Returns HF_OK or HF_IO. */
-static hf_status refuse_case(const char *file, hf_messages *messages)
-{
-    const char *ending = hf_path_ending(file);
-    if (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0) return HF_OK;
-    bool is_study = hf_study_is(file);
-    return hf_error(messages, HF_IO,
-                    "%s: this file is not a result file (HDF5) but a %s. To check this file, use `hifdm check %s`. To "
-                    "compute a result for `hifdm show`, use `hifdm %s %s`",
-                    file, is_study ? "study" : "case", file, is_study ? "merge" : "run", file);
-}
 
 static hf_status show_study(const hf_options *o, FILE *file, hf_messages *messages)
 {
@@ -36,7 +21,7 @@ static hf_status show_study(const hf_options *o, FILE *file, hf_messages *messag
 static hf_status command_show(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static hf_summary summary;
-    HF_TRY(refuse_case(o->file, messages));
+    HF_TRY(hf_output_refuse_case(o->file, messages));
     if (hf_merged_is(o->file)) return show_study(o, file, messages);
     HF_TRY(hf_store_read_summary(o->file, &summary, messages));
     if (o->json) {

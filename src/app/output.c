@@ -3,6 +3,8 @@
 #include "app/output.h"
 
 #include "base/file_io.h"
+#include "base/path.h"
+#include "case/study.h"
 #include "run/problem_parts.h"
 
 #include <errno.h>
@@ -56,4 +58,15 @@ FILE *hf_output_stream(void)
     FILE *stream = fopencookie(NULL, "w", (cookie_io_functions_t){.write = take});
     if (stream && isatty(STDOUT_FILENO)) setvbuf(stream, NULL, _IOLBF, BUFSIZ);
     return stream ? stream : stdout;
+}
+
+hf_status hf_output_refuse_case(const char *file, hf_messages *messages)
+{
+    const char *ending = hf_path_ending(file);
+    if (strcmp(ending, ".yaml") != 0 && strcmp(ending, ".yml") != 0) return HF_OK;
+    bool is_study = hf_study_is(file);
+    return hf_error(messages, HF_IO,
+                    "%s: this file is not a result file (HDF5) but a %s. To check this file, use `hifdm check %s`. To "
+                    "compute a result, use `hifdm %s %s`",
+                    file, is_study ? "study" : "case", file, is_study ? "merge" : "run", file);
 }

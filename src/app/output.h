@@ -11,6 +11,9 @@
 hf_status hf_output_check(const hf_options *options, const hf_problem *problem, const char *table, const char *path,
                           hf_messages *messages);
 
+/* Refuses an input that is a case or a study by its name, and prints which command to use. Returns HF_OK or HF_IO. */
+hf_status hf_output_refuse_case(const char *file, hf_messages *messages);
+
 /* Writes all of the text [n] to a descriptor. Returns 0, or -1 with errno. errno is EINTR if the program was asked to
  * stop and nobody reads. */
 int hf_output_write(int file, const char *text, size_t n);

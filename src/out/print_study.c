@@ -110,8 +110,8 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
     static const char *const word[][2] = {{"psi_95_m", "psi of 95 %"},
                                           {"merit", "merit"},
                                           {"yield", "yield"},
-                                          {"inner_tension_ratio", "T ratio in"},
-                                          {"boundary_tension_ratio", "T ratio edge"},
+                                          {"inner_tension_ratio", "ratio inside"},
+                                          {"boundary_tension_ratio", "boundary ratio"},
                                           {"n_slack", "slack"},
                                           {"n_loose", "loose"},
                                           {"tension_max_N", "T max"}};

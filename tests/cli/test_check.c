@@ -231,6 +231,8 @@ START_TEST(show_refuses_what_is_no_result)
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "show", REFLECTOR);
     ERR("reflector.yaml: this file is not a result file (HDF5) but a case. To check this file, use `hifdm check ");
+    HIFDM(5, "report", REFLECTOR);
+    ERR("reflector.yaml: this file is not a result file (HDF5) but a case. To check this file, use `hifdm check ");
     HIFDM(5, "show", temp("."));
     ERR("this is a folder, not a result file");
     const char *const make_other[] = {python_program(), "-c", "import h5py, sys; h5py.File(sys.argv[1], 'w')['x'] = 1",

@@ -355,7 +355,7 @@ START_TEST(files_are_not_replaced_unasked)
     HIFDM(5, "report", temp("missing.h5"));
     ERR("missing.h5: cannot open: No such file or directory");
     HIFDM(5, "report", CHEN, "-o", temp("y.html"));
-    ERR("straight-edges.yaml: this file is not a result of hifdm");
+    ERR("straight-edges.yaml: this file is not a result file (HDF5) but a case");
     HIFDM(2, "report");
     ERR("'hifdm report' needs the argument FILE");
     ck_assert(!is_there(temp("y.html")));
