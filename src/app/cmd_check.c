@@ -355,13 +355,14 @@ static hf_status check_case(const hf_check_request *request, const char *name, h
 {
     const hf_case *settings = &c->problem.settings;
     HF_TRY(hf_check_load(request, c, messages));
-    hf_print_line(f, "%s: valid", name);
+    hf_status status = hf_check_try(c, messages);
+    hf_print_line(f, status == HF_OK ? "%s: valid" : "%s: the case file has no faults, but a run of it would fail",
+                  name);
     print_scene(c, f);
     if (settings->form.prestress == HF_PRESTRESS_EXACT) print_prestress(c, f);
     if (settings->has_truss) print_truss(c, f);
     print_plan(c, f);
     print_memory(c, f);
-    hf_status status = hf_check_try(c, messages);
     print_form_time(c, f);
     print_tolerance_time(c, f);
     if (!isnan(c->design_s))
@@ -468,7 +469,8 @@ static hf_status check_points(const hf_check_request *request, const hf_study *s
     int count[HF_N_POINT_STATE] = {0};
     hf_check_points t;
     HF_TRY(hf_check_study_points(s, &check->problem, &t, messages));
-    hf_print_line(f, "%s: valid", request->path);
+    hf_print_line(f, t.n_fault ? "%s: the study has no faults, but some of its points cannot be run" : "%s: valid",
+                  request->path);
     if (*s->title) hf_print_line(f, "  %-13s %s", "study", s->title);
     hf_print_line(f, "  %-13s %s", "base case", s->base);
     print_axes(s, f);
