@@ -310,6 +310,13 @@ static double gain_alone(const choice *c, int i, int n_adjusted, const int *adju
     return -move * (2 * slope + move * curve);
 }
 
+static bool is_on_list(const choice *c, int i)
+{
+    for (int k = 0; k < c->n_list; k++)
+        if (c->list[k] == i) return true;
+    return false;
+}
+
 /* Lists the turnbuckles off the list that gain most alone, in descending order. Returns their number. */
 static int find_candidates(choice *c, int candidate[SHORT_LIST])
 {
@@ -317,10 +324,7 @@ static int find_candidates(choice *c, int candidate[SHORT_LIST])
     for (int i = 0; i < c->p->n; i++)
         if (c->best[i]) adjusted[n_adjusted++] = i;
     for (int i = 0; i < c->p->n; i++) {
-        bool is_listed = false;
-        for (int k = 0; k < c->n_list; k++)
-            is_listed |= c->list[k] == i;
-        if (is_listed) continue;
+        if (is_on_list(c, i)) continue;
         c->gain[i] = gain_alone(c, i, n_adjusted, adjusted);
         n = hf_list_largest(i, c->gain, SHORT_LIST, n, candidate);
     }

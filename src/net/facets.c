@@ -179,13 +179,18 @@ static int walk(graph *g, int h, int corner[4], double *area)
     return n;
 }
 
+static bool is_convex(const hf_scene *s, int n, const int corner[4], double area)
+{
+    for (int k = 0; k < n; k++)
+        if (!(hf_facet_double_area(s, corner[k], corner[(k + 1) % n], corner[(k + 2) % n]) > -STRAIGHT_PART * area))
+            return false;
+    return true;
+}
+
 static void add_facet(const hf_scene *s, int n, const int node[4], double area, hf_facets *f)
 {
     int *corner = f->corner + 4 * (size_t)f->n_facet;
-    bool is_convex = n <= 4;
-    for (int k = 0; k < n && is_convex; k++)
-        is_convex = hf_facet_double_area(s, node[k], node[(k + 1) % n], node[(k + 2) % n]) > -STRAIGHT_PART * area;
-    if (!is_convex) {
+    if (n > 4 || !is_convex(s, n, node, area)) {
         f->n_open++;
         return;
     }

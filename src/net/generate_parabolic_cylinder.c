@@ -279,6 +279,14 @@ static void scallop_edge(const grid *g, int axis, int line, double inward)
     }
 }
 
+static void scallop_edges(const grid *g)
+{
+    for (int axis = 0; axis < 2 && g->c->scallop > 0; axis++) {
+        scallop_edge(g, axis, 0, +1);
+        scallop_edge(g, axis, axis == 0 ? g->ny - 1 : g->nx - 1, -1);
+    }
+}
+
 /* ---- cables ---- */
 
 /* Families of cables, sorted by name: X(enumerator, name, family in the rear net). */
@@ -372,10 +380,9 @@ static void add_all(void *context, hf_front_net *front)
     grid *g = context;
     g->front = front;
     front->n_node = g->first_tie;
-    if (front->position_m) put_nodes(g);
-    for (int axis = 0; axis < 2 && front->position_m && g->c->scallop > 0; axis++) {
-        scallop_edge(g, axis, 0, +1);
-        scallop_edge(g, axis, axis == 0 ? g->ny - 1 : g->nx - 1, -1);
+    if (front->position_m) {
+        put_nodes(g);
+        scallop_edges(g);
     }
     for (int j = 0; j < g->ny; j++)
         for (int i = 0; i < g->nx; i++) {

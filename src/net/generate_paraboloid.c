@@ -121,6 +121,17 @@ static int first_of_ring(int ring)
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
 }
 
+/* Adds ring k with 6k nodes, k on each side. The nodes of the last ring are evenly spaced on the rim. Those of the
+ * other rings start on circles and are relaxed later. */
+static void add_ring(const hf_paraboloid *p, hf_front_net *f, int ring)
+{
+    double r = radius(p) * ring / p->rings;
+    for (int i = 0; i < 6 * ring; i++) {
+        double angle = HF_PI / 3 * i / ring;
+        add_point(f, r * hf_cosine(angle), r * hf_sine(angle), ring == p->rings, (hf_front_label){"f", ring, i});
+    }
+}
+
 /* Adds the cables along the ring, and those to the next ring: two from each node, three from a corner. */
 static void join_ring(const hf_paraboloid *p, hf_front_net *f, int ring)
 {
@@ -134,16 +145,11 @@ static void join_ring(const hf_paraboloid *p, hf_front_net *f, int ring)
     }
 }
 
-/* Ring k has 6k nodes, k on each side. The nodes of the last ring are evenly spaced on the rim. Those of the other
- * rings start on circles and are relaxed later. */
 static void make_triangles(const hf_paraboloid *p, hf_front_net *f)
 {
     add_point(f, 0, 0, false, (hf_front_label){"f", 0, 0});
     for (int ring = 1; ring <= p->rings; ring++)
-        for (int i = 0; i < 6 * ring; i++) {
-            double r = radius(p) * ring / p->rings, angle = HF_PI / 3 * i / ring;
-            add_point(f, r * hf_cosine(angle), r * hf_sine(angle), ring == p->rings, (hf_front_label){"f", ring, i});
-        }
+        add_ring(p, f, ring);
     for (int i = 0; i < 6; i++)
         add_line(f, 0, 1 + i);
     for (int ring = 1; ring < p->rings; ring++)
@@ -278,6 +284,27 @@ static hf_status make_grid(const hf_paraboloid *p, hf_front_net *f)
     return status;
 }
 
+/* Puts the grid on the paraboloid. */
+static void raise(const hf_paraboloid *p, hf_front_net *f)
+{
+    for (int i = 0; i < f->n_node; i++) {
+        double *front = f->position_m + 3 * (size_t)i;
+        front[0] += p->offset_m;
+        front[2] = front_height(p, front[0], front[1]);
+    }
+}
+
+/* Returns the number of free rear nodes that are outside the rim of the rear net. */
+static int count_outside(const hf_paraboloid *p, int n_front, const hf_scene *s)
+{
+    int n = 0;
+    for (int i = n_front; i < s->n_node; i++) {
+        const double *rear = s->position_m + 3 * (size_t)i;
+        n += s->role[i] != HF_ROLE_SUPPORT && !(hf_norm(rear[0] - p->offset_m, rear[1], 0) < radius(p));
+    }
+    return n;
+}
+
 hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N[2], hf_scene *scene,
                               hf_messages *messages)
 {
@@ -299,18 +326,11 @@ hf_status hf_scene_paraboloid(const hf_paraboloid *paraboloid, const double EA_N
     hf_front_net front;
     hf_status status = make_grid(paraboloid, &front);
     if (status == HF_OK && !is_quad) status = relax(paraboloid, &front);
-    for (int i = 0; i < front.n_node && status == HF_OK; i++) { /* puts the grid on the paraboloid */
-        double *p = front.position_m + 3 * (size_t)i;
-        p[0] += paraboloid->offset_m;
-        p[2] = front_height(paraboloid, p[0], p[1]);
+    if (status == HF_OK) {
+        raise(paraboloid, &front);
+        status = hf_front_net_scene(&front, &rear, EA_N, &families, scene);
     }
-    if (status == HF_OK) status = hf_front_net_scene(&front, &rear, EA_N, &families, scene);
-    bool is_outside = false; /* a free rear node is outside the rim of the rear net */
-    for (int i = front.n_node; i < scene->n_node && status == HF_OK; i++) {
-        const double *p = scene->position_m + 3 * (size_t)i;
-        bool is_inside = hf_norm(p[0] - paraboloid->offset_m, p[1], 0) < radius(paraboloid);
-        is_outside |= scene->role[i] != HF_ROLE_SUPPORT && !is_inside;
-    }
+    bool is_outside = status == HF_OK && count_outside(paraboloid, front.n_node, scene) > 0;
     hf_front_net_free(&front);
     if (is_outside) return hf_error(messages, HF_BAD_CASE, "scene.paraboloid.tie_direction: %s", outside);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "scene: out of memory for %d rings", paraboloid->rings);

@@ -23,12 +23,20 @@
 
 /* ---- layout ---- */
 
+/* Returns true if a law in force needs the axial stiffness. The methods iterative_fdm and fdm replace
+ * every such law. */
+static bool needs_EA(const hf_scene *s, hf_method method)
+{
+    if (method == HF_METHOD_ITERATIVE_FDM || method == HF_METHOD_FDM) return false;
+    for (int e = 0; e < s->n_cable; e++)
+        if (hf_law_has(s->law[e], HF_LAW_NEEDS_EA)) return true;
+    return false;
+}
+
 static hf_status allocate(const hf_scene *s, hf_method method, hf_model *m)
 {
-    size_t n = (size_t)m->n_node, e = (size_t)m->n_cable, n_load = s->load_N ? 3 * n : 0, n_EA = 0;
-    bool keeps_laws = method != HF_METHOD_ITERATIVE_FDM && method != HF_METHOD_FDM; /* these need no stiffness */
-    for (int i = 0; i < m->n_cable && keeps_laws; i++)
-        if (hf_law_has(s->law[i], HF_LAW_NEEDS_EA)) n_EA = e;
+    size_t n = (size_t)m->n_node, e = (size_t)m->n_cable;
+    size_t n_load = s->load_N ? 3 * n : 0, n_EA = needs_EA(s, method) ? e : 0;
     HF_TRY(HF_ARENA_ARRAYS(&m->block, HF_ARRAY(m->row_of_node, n), HF_ARRAY(m->node_of_row, n),
                            HF_ARRAY(m->end_row, 2 * e), HF_ARRAY(m->diagonal_a, e), HF_ARRAY(m->diagonal_b, e),
                            HF_ARRAY(m->off_diagonal, e), HF_ARRAY(m->inner_row, n), HF_ARRAY(m->position_m, 3 * n),

@@ -77,6 +77,13 @@ static hf_status take_ids(const hf_scene_arrays *a, hf_scene *s, int *n_fault, h
 
 /* ---- nodes ---- */
 
+static bool any_is_loaded(const hf_scene_arrays *a)
+{
+    for (int i = 0; a->load_N && i < 3 * a->n_node; i++)
+        if (a->load_N[i] != 0) return true; /* also true for NaN */
+    return false;
+}
+
 static void take_nodes(const hf_scene_arrays *a, hf_scene *s, int *n_fault, hf_messages *messages)
 {
     size_t n = (size_t)s->n_node;
@@ -179,10 +186,8 @@ hf_status hf_scene_from_arrays(const hf_scene_arrays *a, const double group_EA_N
     if (a->n_node < 1 || a->n_cable < 1)
         return hf_error(messages, HF_BAD_CASE, "scene: %d nodes and %d cables do not form a net", a->n_node,
                         a->n_cable);
-    bool with_load = false, with_EA = a->EA_N || group_EA_N[0] > 0 || group_EA_N[1] > 0;
-    for (int i = 0; a->load_N && i < 3 * a->n_node; i++)
-        with_load |= a->load_N[i] != 0; /* also true for NaN */
-    hf_status status = hf_scene_allocate(s, a->n_node, a->n_cable, with_load, with_EA, false);
+    bool with_EA = a->EA_N || group_EA_N[0] > 0 || group_EA_N[1] > 0;
+    hf_status status = hf_scene_allocate(s, a->n_node, a->n_cable, any_is_loaded(a), with_EA, false);
     if (status == HF_OK) status = take_ids(a, s, &n_fault, messages);
     if (status == HF_OK) {
         take_nodes(a, s, &n_fault, messages);

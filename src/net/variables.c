@@ -104,6 +104,14 @@ static hf_status add_support(maker *q, int row, int support_row)
     return HF_OK;
 }
 
+/* Returns true if a cable joins this support to a free node. */
+static bool holds_net(const hf_model *m, int support_row)
+{
+    for (int k = 0; k < 2 * m->n_cable; k++)
+        if (m->end_row[k] == support_row && m->end_row[k ^ 1] < m->n_free) return true;
+    return false;
+}
+
 /* Adds the supports at the ends of the cables of a row that hold the net. Each is added once, in the order
  * of the cables. */
 static hf_status add_supports(maker *q, int row, int n_picked)
@@ -116,10 +124,8 @@ static hf_status add_supports(maker *q, int row, int n_picked)
     for (int i = 0; i < 2 * n_picked; i++) {
         int support_row = m->end_row[2 * q->picked[i / 2] + i % 2];
         if (support_row < m->n_free || q->taken[m->n_cable + support_row] == row) continue;
-        bool holds_net = false;
-        for (int k = 0; k < 2 * m->n_cable; k++)
-            holds_net |= m->end_row[k] == support_row && m->end_row[k ^ 1] < m->n_free;
-        if (holds_net) HF_TRY(add_support(q, row, support_row));
+        if (!holds_net(m, support_row)) continue;
+        HF_TRY(add_support(q, row, support_row));
     }
     return HF_OK;
 }
