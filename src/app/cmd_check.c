@@ -376,21 +376,16 @@ static hf_status check_case(const hf_check_request *request, const char *name, h
 
 #define VALUES_TOLD 6 /* maximum number of values that are listed for an axis; else the first and the last */
 
-static const char *value_of(const hf_study_axis *axis, int k)
-{
-    return strchr(axis->canonical[k], '=') + 1;
-}
-
 static void print_axes(const hf_study *s, FILE *f)
 {
     for (int a = 0; a < s->n_axis; a++) {
         const hf_study_axis *axis = &s->axis[a];
         char text[1024] = "";
         for (int k = 0; k < axis->n_value && axis->n_value <= VALUES_TOLD; k++)
-            hf_text_append(text, sizeof text, ", ", value_of(axis, k), "");
+            hf_text_append(text, sizeof text, ", ", hf_study_axis_value(axis, k), "");
         if (axis->n_value > VALUES_TOLD)
             snprintf(text, sizeof text, "%d values%s, %s .. %s", axis->n_value, axis->is_sampled ? ", sampled" : "",
-                     value_of(axis, 0), value_of(axis, axis->n_value - 1));
+                     hf_study_axis_value(axis, 0), hf_study_axis_value(axis, axis->n_value - 1));
         hf_text_trim_utf8(text);
         hf_print_line(f, "  %-13s %s: %s%s%s", a ? "" : "axes", axis->key.path, text, *axis->key.field->unit ? " " : "",
                       axis->key.field->unit);
@@ -441,21 +436,21 @@ static void print_left(const hf_study *s, const int count[HF_N_POINT_STATE], dou
 {
     static const hf_point_state other[] = {HF_POINT_FAILED, HF_POINT_OUTDATED, HF_POINT_RUNNING};
     int n_missing = count[HF_POINT_MISSING], n_anew = count[HF_POINT_FAILED] + count[HF_POINT_OUTDATED];
-    char told[128] = "", retry[64] = "", item[32];
+    char others[128] = "", retry[64] = "", item[32];
     if (n_missing) print_time(n_missing, "", each_s, threads, s->has_tolerance, f);
     if (n_missing && n_anew) strcpy(retry, hf_point_state_word[0]);
     for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
         const char *word = hf_point_state_word[other[k]];
         if (!count[other[k]]) continue;
         snprintf(item, sizeof item, "%d %s", count[other[k]], word);
-        hf_text_append(told, sizeof told, ", ", item, "");
+        hf_text_append(others, sizeof others, ", ", item, "");
         if (other[k] != HF_POINT_RUNNING) hf_text_append(retry, sizeof retry, ",", word, "");
     }
     if (n_anew)
-        hf_print_line(f, "%s%s: `hifdm sweep %s --retry %s`%s", n_missing ? "" : "nothing is missing; ", told, s->path,
-                      retry, n_missing ? " runs these, too" : "");
-    else if (!n_missing && *told)
-        hf_print_line(f, "nothing is missing; %s", told);
+        hf_print_line(f, "%s%s: `hifdm sweep %s --retry %s`%s", n_missing ? "" : "nothing is missing; ", others,
+                      s->path, retry, n_missing ? " runs these, too" : "");
+    else if (!n_missing && *others)
+        hf_print_line(f, "nothing is missing; %s", others);
     else if (!n_missing)
         fprintf(f, "all points have been run\n");
     if (!n_missing && n_anew) print_time(n_anew, " anew", each_s, threads, s->has_tolerance, f);

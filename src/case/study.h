@@ -18,6 +18,7 @@
 
 #include "case/config_key.h"
 #include <stdbool.h>
+#include <string.h>
 
 #define HF_STUDY_AXIS_MAX 32
 #define HF_STUDY_POINT_MAX 1000000
@@ -36,6 +37,12 @@ typedef struct {
     char **canonical; /* [n_value], "key=value" with one spelling for each value: 10, not 1e1 */
     char **set;       /* [n_value], the same as an override of hf_config_load: paths start from the current folder */
 } hf_study_axis;
+
+/* Returns value k of the axis as text, without its key. */
+static inline const char *hf_study_axis_value(const hf_study_axis *axis, int k)
+{
+    return strchr(axis->canonical[k], '=') + 1;
+}
 
 typedef struct {
     uint64_t number; /* the id as a number */

@@ -60,7 +60,7 @@ static bool has_numbers(const hf_study_axis *axis)
 {
     double value;
     for (int k = 0; k < axis->n_value; k++)
-        if (!hf_text_double(strchr(axis->canonical[k], '=') + 1, &value)) return false;
+        if (!hf_text_double(hf_study_axis_value(axis, k), &value)) return false;
     return true;
 }
 
@@ -77,7 +77,7 @@ static void write_axis(merger *m, hid_t group, int i_axis)
                                : type == HF_FIELD_INT || type == HF_FIELD_INT_PAIR ? HF_KIND_INT
                                                                                    : NULL;
     for (int i = 0; i < m->points->n_point; i++) {
-        const char *text = strchr(axis->canonical[value[(ptrdiff_t)i * m->study->n_axis]], '=') + 1;
+        const char *text = hf_study_axis_value(axis, value[(ptrdiff_t)i * m->study->n_axis]);
         if (!kind)
             ((const char **)m->room)[i] = text;
         else if (type == HF_FIELD_INT_PAIR)
