@@ -145,7 +145,6 @@ static hf_status run_stages(hf_run *r, hf_summary *s, hf_messages *messages)
     hf_status status = HF_OK;
     for (int i = 0; i < n && status == HF_OK; i++) {
         r->has_design = i >= n_design;
-        *r->stopped_at = '\0'; /* of this stage alone */
         status = i > 0 && hf_run_must_stop(r) ? HF_INTERRUPTED : stage[i](r, s, messages);
     }
     bool is_unfinished = status == HF_INTERRUPTED || (r->has_design && is_of_machine(status));

@@ -147,8 +147,10 @@ static hf_status find_steps(hf_run *r, hf_summary *s, hf_refine_result *outcome,
     hf_status status = hf_refine_run(&p->evaluator, bounds->lower, bounds->upper, p->settings.optimize.refine_steps,
                                      NULL, &watcher, r->design, &p->workspace, outcome);
     s->stage[HF_STAGE_REFINE].wall_s = q.earlier_s + hf_clock_s() - q.begin_s;
-    note_stop(&q, r->stopped_at);
-    if (hf_run_must_stop(r)) return HF_INTERRUPTED;
+    if (hf_run_must_stop(r)) {
+        note_stop(&q, r->stopped_at);
+        return HF_INTERRUPTED;
+    }
     if (status == HF_OK && r->plan.ends_with_refine) warn_of_steps(&q, outcome);
     return status;
 }
