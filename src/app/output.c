@@ -1,4 +1,4 @@
-/* Writes to readers that may have stopped reading. output.h describes the interface. */
+/* Checks names of files, and writes to readers that may have stopped reading. output.h describes the interface. */
 #define _GNU_SOURCE /* for fopencookie */
 #include "app/output.h"
 

@@ -1,5 +1,5 @@
-/* output - checks the names of output files, and writes to readers that may have stopped reading. A request to stop
- * (base/signals.h) is noticed while the program waits for such a reader. */
+/* output - checks the names of results and of output files, and writes to readers that may have stopped reading. A
+ * request to stop (base/signals.h) is noticed while the program waits for such a reader. */
 #pragma once
 
 #include "app/options.h"

@@ -123,8 +123,8 @@ def estimate(net, which, target):
                            for unit in np.eye(len(e))]).T
         gap = target - place[which].ravel() + effect @ e
         matrix = np.vstack((effect / SIGMA_PLACE, whiten))
-        wanted = np.linalg.lstsq(matrix, np.concatenate((gap / SIGMA_PLACE, np.zeros(len(e)))), rcond=None)[0]
-        step = wanted - e
+        solution = np.linalg.lstsq(matrix, np.concatenate((gap / SIGMA_PLACE, np.zeros(len(e)))), rcond=None)[0]
+        step = solution - e
         before = misfit(e)
         while misfit(e + step) > before and np.abs(step).max() > 1e-12:
             step /= 2
@@ -138,7 +138,7 @@ def check(cut, jig, folder, measured, answer):
     net, target_position = Net(cut, jig, folder), {n["id"]: n for n in rows(f"{folder}/nodes.csv")}
     said = json.load(open(answer))
     aimed = "{}_m" if said["aim"] == "design" else "{}0_m"
-    wanted = np.array([[float(target_position[i][aimed.format(c)]) for c in "xyz"] for i in net.id])
+    aim = np.array([[float(target_position[i][aimed.format(c)]) for c in "xyz"] for i in net.id])
     index = {name: i for i, name in enumerate(net.id)}
     table = rows(measured)
     which = np.array([index[r["id"]] for r in table])
@@ -148,7 +148,7 @@ def check(cut, jig, folder, measured, answer):
     worst_error = np.abs(told - e).max()
 
     def psi(errors):
-        d = shape(errors)[net.inner] - wanted[net.inner]
+        d = shape(errors)[net.inner] - aim[net.inner]
         return np.sqrt((d * d).sum(axis=1).mean())
 
     worst_figure, turned = abs(psi(told) - said["estimated_m"]), told.copy()
