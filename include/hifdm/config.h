@@ -54,6 +54,8 @@ typedef struct {
     hf_adjust_settings adjust;       /* section adjust */
     hf_built_settings built;         /* rows of `cables`, `nodes` and `load_cases` */
     hf_tolerance_settings tolerance; /* section tolerance */
+    int n_requirement;               /* number of rows of `requirements` */
+    hf_requirement_settings requirement[HF_REQUIREMENT_ROWS_MAX]; /* [n_requirement] rows of `requirements` */
 
     bool has_truss, has_truss_import, has_truss_ring;                      /* which sections the case has */
     hf_truss_settings truss;                                               /* section truss */

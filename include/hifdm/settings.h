@@ -123,7 +123,8 @@ typedef enum {
     X(hf_adjust_figure_word, 4, "psi", "surface", "facets")                                                            \
     X(hf_distribution_word, 3, "normal", "uniform")                                                                    \
     X(hf_sampling_word, 3, "random", "sobol")                                                                          \
-    X(hf_aim_word, 3, "target_positions", "design")
+    X(hf_aim_word, 3, "target_positions", "design")                                                                    \
+    X(hf_focus_word, 3, "refocused", "fixed")
 #define HF_SETTINGS_EXTERN(name, size, ...) extern const char *const name[size];
 HF_SETTINGS_WORDS(HF_SETTINGS_EXTERN)
 #undef HF_SETTINGS_EXTERN
@@ -378,6 +379,43 @@ typedef struct {
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];     /* [n_require] rows of tolerance.require */
     hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX]; /* [n_truss] rows of tolerance.truss */
 } hf_tolerance_settings;
+
+/* A radio figure belongs to one of two feeds. The refocused feed follows the best fit of the target surface to the
+ * shape in position, direction and focal length. The fixed feed remains where the target surface has it. */
+typedef enum { HF_REFOCUSED, HF_FIXED, HF_N_FOCUS } hf_focus;
+
+/* Each row X(name, word, unit, description) defines a figure that a row of `requirements` can bound. A figure of a set
+ * of cables or of supports is judged by its worst cable or support. */
+#define HF_REQUIRED_FIGURES(X)                                                                                         \
+    X(PSI, "psi", "m", "RMS distance of the inner nodes from their target positions")                                  \
+    X(SURFACE, "surface", "m", "RMS half-path error of the inner nodes")                                               \
+    X(FACETS, "facets", "m", "RMS half-path error of the facets")                                                      \
+    X(TENSION, "tension", "N", "tension of each cable of the set")                                                     \
+    X(RATIO, "ratio", "", "ratio of maximum to minimum tension in the set")                                            \
+    X(SLACK, "slack_cables", "", "number of slack cables in the set")                                                  \
+    X(LOOSE, "loose_nodes", "", "number of nodes that no taut cable holds")                                            \
+    X(DEFLECTION, "deflection", "m", "displacement of each attachment by the forces of the net")                       \
+    X(PULL, "pull", "N", "force of the net on each support")                                                           \
+    X(MASS, "mass", "kg", "mass of the cables of the set")
+#define HF_REQUIRED_ENUMERATOR(name, word, unit, description) HF_REQUIRED_##name,
+typedef enum { HF_REQUIRED_FIGURES(HF_REQUIRED_ENUMERATOR) HF_REQUIRED_N_FIGURE } hf_required_figure;
+#undef HF_REQUIRED_ENUMERATOR
+/* Words of the figures, terminated by NULL, and their units. */
+extern const char *const hf_required_figure_word[HF_REQUIRED_N_FIGURE + 1];
+extern const char *const hf_required_figure_unit[HF_REQUIRED_N_FIGURE];
+
+/* One row of `requirements`. A row bounds a figure of the design or, with a share, of the as-built samples. */
+typedef struct {
+    hf_required_figure figure;        /* bounded figure */
+    char set[HF_SET_NAME_SIZE];       /* cables of the figures tension, ratio, slack_cables and mass; "": all */
+    hf_focus feed;                    /* feed of the figures surface and facets */
+    char load_case[HF_SET_NAME_SIZE]; /* "nominal", the name of a load case, or "all" for nominal and all load cases */
+    double at_least, at_most;         /* bounds in the unit of the figure; NaN: not given */
+    double within[2];                 /* both bounds in one key; infinite if not given. The bounds are then copied */
+    double share; /* required share of the as-built samples; 0: the share is only reported; NaN: nominal net */
+} hf_requirement_settings;
+
+#define HF_REQUIREMENT_ROWS_MAX 32 /* maximum number of rows of `requirements` */
 
 #define HF_LIST_MAX 32 /* maximum number of values in a list */
 

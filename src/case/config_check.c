@@ -198,9 +198,8 @@ static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
         }
 }
 
-/* Reports a key in a row of a kind that does not use it. `users` has one bit for each kind that uses it. */
-static void check_use(hf_config_faults *f, const char *list, int row, const char *key, int kind,
-                      const char *const *kind_word, unsigned users)
+void hf_config_check_use(hf_config_faults *f, const char *list, int row, const char *key, int kind,
+                         const char *const *kind_word, unsigned users)
 {
     char path[HF_KEY_SIZE], what[WHAT_SIZE];
     snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
@@ -263,7 +262,7 @@ static void check_objectives(const char *list, int n_objective, const hf_objecti
     for (int i = 0; i < n_objective; i++) {
         const hf_objective_settings *g = &objective[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)
-            check_use(f, list, i, use[k].key, (int)g->figure, hf_figure_kind_word, use[k].users);
+            hf_config_check_use(f, list, i, use[k].key, (int)g->figure, hf_figure_kind_word, use[k].users);
         hf_config_check_set(f, list, i, g->set);
         if (g->figure == HF_FIGURE_TENSION && isnan(g->target))
             hf_config_fault_in_row(f, list, i, "target", "is missing: the tension that is wanted, in N");
@@ -315,7 +314,8 @@ static void check_limits(const hf_optimize_settings *o, hf_config_faults *f)
     static const char list[] = "optimize.limits";
     for (int i = 0; i < o->n_limit; i++) {
         const hf_limit_settings *l = &o->limit[i];
-        check_use(f, list, i, "set", (int)l->figure, hf_limit_word, 1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
+        hf_config_check_use(f, list, i, "set", (int)l->figure, hf_limit_word,
+                            1u << HF_LIMIT_TENSION | 1u << HF_LIMIT_RATIO);
         hf_config_check_set(f, list, i, l->set);
         double least = l->figure == HF_LIMIT_RATIO ? 1 : 0; /* smallest possible value */
         if (l->figure != HF_LIMIT_TENSION && (l->lower > least || l->upper <= least || isinf(l->upper)))
@@ -346,6 +346,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     if (!f->failed) check_generators(c, f);
     if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && !f->failed) check_truss(c, f);
     if (!f->failed) hf_config_check_built(c, f);
+    if (!f->failed) hf_config_check_requirements(c, f);
     if (!c->has_optimize || f->failed) return; /* rejected values are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
@@ -373,6 +374,11 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
 void hf_config_complete(hf_case *c)
 {
     c->has_truss |= c->has_truss_import || c->has_truss_ring;
+    for (int i = 0; i < c->n_requirement; i++) {
+        hf_requirement_settings *r = &c->requirement[i];
+        if (isfinite(r->within[0])) r->at_least = r->within[0];
+        if (isfinite(r->within[1])) r->at_most = r->within[1];
+    }
     if (!c->has_surface) return;
     const char *key;
     hf_surface_settings known = hf_config_known_surface(c, &key);

@@ -9,6 +9,13 @@ void hf_config_check(const hf_case *settings, hf_config_faults *faults);
 /* Reports faults in the keys of the as-built net: `adjust`, `cables`, `load_cases` and `tolerance`. */
 void hf_config_check_built(const hf_case *settings, hf_config_faults *faults);
 
+/* Reports faults in the rows of `requirements`. */
+void hf_config_check_requirements(const hf_case *settings, hf_config_faults *faults);
+
+/* Reports a key in a row of a kind that does not use it. `users` has one bit for each kind that uses it. */
+void hf_config_check_use(hf_config_faults *faults, const char *list, int row, const char *key, int kind,
+                         const char *const *kind_word, unsigned users);
+
 /* Reports faults in the keys `state`, `over`, `take` and `quantile` of the n_objective rows of a list of objectives. */
 void hf_config_check_nets(const hf_case *settings, const char *list, int n_objective,
                           const hf_objective_settings *objective, hf_config_faults *faults);

@@ -224,6 +224,17 @@ static const hf_field require_field[] = {
     {"at_least", HF_FIELD_DOUBLE, IN(require, at_least), -BIG, BIG, "", "", NULL},
 };
 
+static const hf_field requirement_field[] = {
+    {"figure", HF_FIELD_WORD, IN(requirement, figure), 0, 0, NULL, "", hf_required_figure_word},
+    {"set", HF_FIELD_TEXT, IN(requirement, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
+    {"feed", HF_FIELD_WORD, IN(requirement, feed), 0, 0, "refocused", "", hf_focus_word},
+    {"load_case", HF_FIELD_TEXT, IN(requirement, load_case), 1, HF_SET_NAME_SIZE, "nominal", "", NULL},
+    {"at_least", HF_FIELD_DOUBLE, IN(requirement, at_least), -BIG, BIG, "", "", NULL},
+    {"at_most", HF_FIELD_DOUBLE, IN(requirement, at_most), -BIG, BIG, "", "", NULL},
+    {"within", HF_FIELD_BOUNDS, IN(requirement, within), -BIG, BIG, "", "", NULL},
+    {"share", HF_FIELD_DOUBLE, IN(requirement, share), 0, 1, "", "", NULL},
+};
+
 static const hf_field truss_heat_field[] = {
     {"part", HF_FIELD_WORD, IN(truss_heat, part), 0, 0, NULL, "", hf_part_word + HF_PART_TRUSS},
     {"sigma_temperature_K", HF_FIELD_DOUBLE, IN(truss_heat, sigma_temperature_K), HF_ABOVE_ZERO, 1000, NULL, "K", NULL},
@@ -246,6 +257,7 @@ const hf_list hf_list_table[] = {
     LIST("cables", built.n_cable, built.cable, HF_MATERIAL_ROWS_MAX, cable_field, 0),
     LIST("nodes", built.n_node, built.node, HF_MATERIAL_ROWS_MAX, node_field, 0),
     LIST("load_cases", built.n_load_case, built.load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field, 0),
+    LIST("requirements", n_requirement, requirement, HF_REQUIREMENT_ROWS_MAX, requirement_field, 0),
     LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field, 0),
     LIST("tolerance.truss", tolerance.n_truss, tolerance.truss, HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, 0),
 };

@@ -9,6 +9,12 @@ HF_SETTINGS_WORDS(WORDS)
 #define WORD(name, word) word,
 const char *const hf_optimize_method_word[HF_OPTIMIZE_N_METHOD + 1] = {HF_OPTIMIZE_METHODS(WORD) NULL};
 #undef WORD
+#define WORD(name, word, unit, description) word,
+const char *const hf_required_figure_word[HF_REQUIRED_N_FIGURE + 1] = {HF_REQUIRED_FIGURES(WORD) NULL};
+#undef WORD
+#define UNIT(name, word, unit, description) unit,
+const char *const hf_required_figure_unit[HF_REQUIRED_N_FIGURE] = {HF_REQUIRED_FIGURES(UNIT)};
+#undef UNIT
 #define WORD(name, word, unit, condition, description) word,
 const char *const hf_tolerance_measure_word[] = {HF_TOLERANCE_MEASURES(WORD) NULL};
 #undef WORD

@@ -1,0 +1,144 @@
+/* Checks the rows of `requirements`: bounds, keys that a figure does not use, load cases, shares, and rows that repeat
+ * or contradict another row. Sets of cables and facets are known only with the net; run/requirements_stage.c checks
+ * them. */
+#include "case/config_check.h"
+
+#include "base/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char list[] = "requirements";
+
+enum {
+    OF_SET = 1u << HF_REQUIRED_TENSION | 1u << HF_REQUIRED_RATIO | 1u << HF_REQUIRED_SLACK | 1u << HF_REQUIRED_MASS,
+    OF_SURFACE = 1u << HF_REQUIRED_SURFACE | 1u << HF_REQUIRED_FACETS
+};
+
+static bool is_of(const hf_requirement_settings *r, unsigned figures)
+{
+    return figures >> r->figure & 1u;
+}
+
+/* Returns the bounds of a row, also those of `within`; infinite if not given. */
+static void bounds_of(const hf_requirement_settings *r, double bound[2])
+{
+    bound[0] = isnan(r->at_least) ? r->within[0] : r->at_least;
+    bound[1] = isnan(r->at_most) ? r->within[1] : r->at_most;
+}
+
+static void check_bounds(int i, const hf_requirement_settings *r, hf_config_faults *f)
+{
+    double bound[2], least = r->figure == HF_REQUIRED_RATIO ? 1 : 0; /* smallest possible value of a figure */
+    bool has_within = isfinite(r->within[0]) || isfinite(r->within[1]);
+    bounds_of(r, bound);
+    if (has_within && !(isnan(r->at_least) && isnan(r->at_most))) {
+        hf_config_fault_in_row(f, list, i, "within", "replaces at_least and at_most; keep one of them");
+        return;
+    }
+    if (isinf(bound[0]) && isinf(bound[1]))
+        hf_config_fault_in_row(f, list, i, "figure", "has no bound; give at_most, at_least or within");
+    if (bound[0] > bound[1])
+        hf_config_fault_in_row(f, list, i, has_within ? "within" : "at_least", "must not be above at_most");
+    else if (bound[1] < least)
+        hf_config_fault_in_row(f, list, i, has_within ? "within" : "at_most",
+                               least == 1 ? "is below 1, the ratio of equal tensions"
+                                          : "is below 0, which no net can reach");
+}
+
+static void check_load_case(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
+{
+    const hf_built_settings *b = &c->built;
+    const char *name[HF_LOAD_CASE_ROWS_MAX + 2] = {"nominal", "all"}, *near;
+    char what[2 * HF_KEY_SIZE + 2 * HF_SET_NAME_SIZE];
+    bool is_known = !strcmp(r->load_case, name[0]) || (!strcmp(r->load_case, name[1]) && b->n_load_case > 0);
+    for (int k = 0; k < b->n_load_case; k++) {
+        name[2 + k] = b->load_case[k].name;
+        is_known |= !strcmp(name[2 + k], r->load_case);
+    }
+    if (is_known) return;
+    if (b->n_load_case == 0)
+        snprintf(what, sizeof what, "needs load cases; add rows to `load_cases`, or remove this key");
+    else if ((near = hf_text_nearest(r->load_case, name, 2 + b->n_load_case)))
+        snprintf(what, sizeof what, "is neither nominal, all nor a load case of `load_cases`; did you mean '%s'?",
+                 near);
+    else
+        snprintf(what, sizeof what, "is neither nominal, all nor a load case of `load_cases`, whose first is '%s'",
+                 name[2]);
+    hf_config_fault_in_row(f, list, i, "load_case", what);
+}
+
+/* Reports a share that no outcome of the samples could show with a confidence of 95 %. */
+static void check_share(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
+{
+    const double tail = 0.025;
+    char what[160];
+    if (isnan(r->share)) return;
+    if (!c->has_tolerance) {
+        hf_config_fault_in_row(f, list, i, "share", "needs a section tolerance, which defines the as-built samples");
+        return;
+    }
+    double needed = r->share > 0 ? ceil(log(tail) / log(r->share)) : 0;
+    if (r->share == 1)
+        hf_config_fault_in_row(f, list, i, "share", "cannot be 1: no number of samples shows that all nets pass");
+    else if (needed > c->tolerance.samples) {
+        snprintf(what, sizeof what, "cannot be decided by %d samples; set tolerance.samples to at least %.0f",
+                 c->tolerance.samples, needed);
+        hf_config_fault_in_row(f, list, i, "share", what);
+    }
+}
+
+static bool is_same_quantity(const hf_requirement_settings *a, const hf_requirement_settings *b)
+{
+    return a->figure == b->figure && !strcmp(a->set, b->set) && a->feed == b->feed &&
+           !strcmp(a->load_case, b->load_case);
+}
+
+/* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. */
+static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
+{
+    const hf_requirement_settings *r = &c->requirement[i];
+    char what[128];
+    double mine[2], other[2];
+    bounds_of(r, mine);
+    for (int k = 0; k < i; k++) {
+        const hf_requirement_settings *q = &c->requirement[k];
+        bool is_same_share = r->share == q->share || (isnan(r->share) && isnan(q->share));
+        bounds_of(q, other);
+        if (!is_same_quantity(r, q)) continue;
+        if (is_same_share && ((isfinite(mine[0]) && isfinite(other[0])) || (isfinite(mine[1]) && isfinite(other[1])))) {
+            snprintf(what, sizeof what, "is required by row %d already; keep one of the rows", k);
+            hf_config_fault_in_row(f, list, i, "figure", what);
+        } else if (mine[0] > other[1] || mine[1] < other[0]) {
+            snprintf(what, sizeof what, "contradicts row %d: no value meets both rows", k);
+            hf_config_fault_in_row(f, list, i, "figure", what);
+        }
+    }
+}
+
+static void check_needs(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
+{
+    if (is_of(r, OF_SURFACE) && !c->has_surface)
+        hf_config_fault_in_row(f, list, i, "figure", "is not measured; add a section surface");
+    if (r->figure == HF_REQUIRED_DEFLECTION && !(c->has_truss || c->has_truss_import || c->has_truss_ring))
+        hf_config_fault_in_row(f, list, i, "figure", "needs a section truss");
+    if (r->figure == HF_REQUIRED_MASS && (strcmp(r->load_case, "nominal") != 0 || !isnan(r->share)))
+        hf_config_fault_in_row(f, list, i, isnan(r->share) ? "load_case" : "share",
+                               "has no meaning for mass, which neither loads nor errors change; remove this key");
+}
+
+void hf_config_check_requirements(const hf_case *c, hf_config_faults *f)
+{
+    for (int i = 0; i < c->n_requirement; i++) {
+        const hf_requirement_settings *r = &c->requirement[i];
+        hf_config_check_use(f, list, i, "set", (int)r->figure, hf_required_figure_word, OF_SET);
+        hf_config_check_use(f, list, i, "feed", (int)r->figure, hf_required_figure_word, OF_SURFACE);
+        hf_config_check_set(f, list, i, r->set);
+        check_bounds(i, r, f);
+        check_load_case(c, i, r, f);
+        check_share(c, i, r, f);
+        check_needs(c, i, r, f);
+        check_against_earlier(c, i, f);
+    }
+}
