@@ -42,6 +42,7 @@ HF_API_BEGIN
     X(EXISTS, 32, "exists", .exit_code = 5, .text = "the output file exists")                                          \
     X(NO_LAPACK, 35, "no_lapack", .exit_code = 5, .text = "LAPACK cannot be loaded")                                   \
     X(DIFFERENT, 34, "different", .exit_code = 1, .text = "the files differ")                                          \
+    X(REQUIREMENT_FAILED, 36, "requirement_failed", .exit_code = 6, .text = "the result fails a requirement")          \
     X(INTERRUPTED, 33, "interrupted", .exit_code = 75, .text = "told to stop before the end")
 
 /* A result code. HF_OK is 0. */
@@ -68,6 +69,7 @@ const char *hf_status_text(hf_status status);
  *   3    not converged, not evaluated, no feasible design, or failed points in a sweep
  *   4    ill-posed: the net or the truss has no shape, or the design violates a constraint
  *   5    input or output failed, memory ran out, or LAPACK is missing
+ *   6    the result fails a requirement (--strict)
  *   75   interrupted before the end */
 int hf_status_exit_code(hf_status status);
 

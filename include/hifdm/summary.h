@@ -10,6 +10,7 @@
 #include <hifdm/front.h>
 #include <hifdm/optimiser.h>
 #include <hifdm/pattern.h>
+#include <hifdm/requirements.h>
 #include <hifdm/surface.h>
 #include <hifdm/tolerance.h>
 #include <stdbool.h>
@@ -198,10 +199,12 @@ typedef struct {
     /* selected point of the front of another run; its shape is stored as that of the refinement */
     hf_front_origin taken;
 
-    hf_front_table *front;           /* Pareto front of optimize.front, owned; NULL: none */
-    int n_load_case;                 /* number of load cases of the as-built net */
-    hf_load_case_summary *load_case; /* [n_load_case] figures of the load cases, owned */
-    hf_tolerance_summary *tolerance; /* result of the tolerance analysis, owned; NULL: none */
+    hf_front_table *front;               /* Pareto front of optimize.front, owned; NULL: none */
+    int n_load_case;                     /* number of load cases of the as-built net */
+    hf_load_case_summary *load_case;     /* [n_load_case] figures of the load cases, owned */
+    hf_tolerance_summary *tolerance;     /* result of the tolerance analysis, owned; NULL: none */
+    int n_requirement;                   /* number of rows of `requirements` with a verdict */
+    hf_requirement_verdict *requirement; /* [n_requirement] verdicts on the rows, owned */
 } hf_summary;
 
 /* Frees the memory that the summary owns and empties the summary. */

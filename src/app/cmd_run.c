@@ -20,6 +20,15 @@ static hf_status check_tasks(const hf_options *o, hf_messages *messages)
     return HF_OK;
 }
 
+static hf_status judge_strictly(const hf_summary *s, hf_messages *messages)
+{
+    int n = 0;
+    for (int i = 0; i < s->n_requirement; i++)
+        n += s->requirement[i].verdict == HF_VERDICT_FAIL;
+    if (n == 0) return HF_OK;
+    return hf_error(messages, HF_REQUIREMENT_FAILED, "the result fails %d of %d requirements", n, s->n_requirement);
+}
+
 static hf_status run_case(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static hf_summary summary;
@@ -43,6 +52,7 @@ static hf_status run_case(const hf_options *o, FILE *file, hf_messages *messages
         hf_summary_write_json(&summary, status, messages->text, path, file);
     else if (path && !o->quiet)
         hf_print_summary(&summary, path, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
+    if (status == HF_OK && o->strict) status = judge_strictly(&summary, messages);
     hf_summary_free(&summary);
     return status;
 }

@@ -207,6 +207,8 @@ static const hf_option option_table[] = {
      "run evaluate sweep merge tolerance adjust", read_flag, AT(quiet), 0},
     {"--verbose", "-v", NULL, "the summary with certificates, ratios of sets, times and all else", "run tolerance show",
      read_flag, AT(verbose), 0},
+    {"--strict", NULL, NULL, "end with exit status 6 if the result fails a requirement", "run tolerance", read_flag,
+     AT(strict), 0},
     {"--rtol", NULL, "R", "numbers are equal when |a-b| <= atol + R |b| (default 0: to the bit)", "diff",
      read_tolerance, AT(rtol), 0},
     {"--atol", NULL, "A", "see --rtol", "diff", read_tolerance, AT(atol), 0},

@@ -38,7 +38,7 @@ struct hf_options {
     uint64_t seed;
     double rtol, atol; /* arguments of --rtol and --atol */
     hf_progress_mode progress;
-    bool json, quiet, verbose, force;
+    bool json, quiet, verbose, force, strict;
     bool help;               /* true with --help */
     const hf_command *topic; /* the command to describe, for help; NULL: all commands */
     hf_help_form help_as;

@@ -18,6 +18,7 @@
 #include "surface/facet_mesh.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Limits of the number of samples in one call. Their numbers are kept in at most CHUNK_BYTES until the linear model has
  * used them, but for CHUNK_MIN samples in any case. No limit affects the bits of a sample. */
@@ -57,6 +58,7 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
         HF_TRY(hf_directions_find(&t->errors, &t->covariance, n_thread, &t->directions));
     choose_sizes(t);
     size_t n = (size_t)t->n_chunk;
+    t->n_value = HF_TOLERANCE_COLUMNS;
     HF_TRY(HF_ARENA_ARRAYS(&t->block, HF_ARRAY(t->row, n * HF_TOLERANCE_COLUMNS),
                            HF_ARRAY(t->point, n * (size_t)t->directions.n), HF_ARRAY(t->z, n * t->n_z),
                            HF_ARRAY(t->scratch, (size_t)n_thread * t->n_room)));
@@ -65,8 +67,67 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
     return hf_surface_design_make(surface, facets, &b->model, b->position_m, b->tension_N, &t->design);
 }
 
+/* Finds the nominal shape of a load case, and makes the net whose samples are near it. */
+static hf_status make_load_case(hf_montecarlo *t, const double *attachment_move_m, hf_montecarlo_load_case *to,
+                                hf_messages *messages)
+{
+    const hf_built *b = t->built;
+    const hf_load_cases *cases = t->required->load_cases;
+    hf_workspace w = {0};
+    hf_built_net net;
+    hf_form_result r;
+    double *cut_m, *move_m, *load_N;
+    void *block;
+    size_t n = 3 * (size_t)b->model.n_node;
+    int k = to->state - 1;
+    to->load_case = &cases->load_case[k];
+    to->expansion_per_K = cases->material.expansion_per_K;
+    if (attachment_move_m) attachment_move_m += 3 * (size_t)k * (size_t)b->model.n_attachment;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(cut_m, b->model.n_cable), HF_ARRAY(move_m, n), HF_ARRAY(load_N, n)));
+    hf_status status = hf_workspace_create(&b->model, &w);
+    w.stop = b->stop;
+    if (status == HF_OK) {
+        hf_built_load_case(b, &cases->material, to->load_case, attachment_move_m, cut_m, move_m, load_N, &net);
+        hf_built_solve(b, &net, &w, &r);
+        if (r.status == HF_OK) status = hf_built_in_load_case(b, &net, &w, &to->built, messages);
+        if (hf_built_must_stop(b)) status = HF_INTERRUPTED;
+    }
+    if (status == HF_OK && r.status == HF_OK)
+        status = hf_built_batch_create(&to->built, hf_built_batch_threads(t->batch), &to->batch);
+    if (status == HF_OK && to->batch && hf_required_needs_surface(t->required, true, to->state))
+        status = hf_surface_design_make(t->surface, t->facets, &b->model, to->built.position_m, to->built.tension_N,
+                                        &to->design);
+    hf_workspace_free(&w);
+    hf_arena_free_block(block);
+    return status;
+}
+
+hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const double *attachment_move_m,
+                                hf_messages *messages)
+{
+    if (q->n_share == 0) return HF_OK;
+    int n = 0;
+    for (int state = 1; state < q->n_state; state++)
+        n += (int)(q->many >> state & 1u);
+    t->required = q;
+    t->n_value = HF_TOLERANCE_COLUMNS + q->n_share + 2 * q->n_state * q->n_column;
+    HF_TRY(HF_ARENA_ARRAYS(&t->required_block, HF_ARRAY(t->row, (size_t)t->n_chunk * (size_t)t->n_value),
+                           HF_ARRAY(t->load_case, n)));
+    for (int state = 1; state < q->n_state; state++) {
+        if (!(q->many >> state & 1u)) continue;
+        t->load_case[t->n_load_case].state = state;
+        HF_TRY(make_load_case(t, attachment_move_m, &t->load_case[t->n_load_case++], messages));
+    }
+    return HF_OK;
+}
+
 void hf_montecarlo_free(hf_montecarlo *t)
 {
+    for (int k = 0; k < t->n_load_case; k++) {
+        hf_built_batch_free(t->load_case[k].batch);
+        hf_built_free(&t->load_case[k].built);
+    }
+    hf_arena_free_block(t->required_block);
     hf_built_batch_free(t->batch);
     hf_directions_free(&t->directions);
     hf_arena_free_block(t->covariance.block);
@@ -89,6 +150,27 @@ static void make_sample(void *context, long i, double *cut_m, double *EA_N, doub
     else
         hf_built_errors_draw(&t->errors, i, z);
     hf_built_errors_apply(&t->errors, t->scale, z, cut_m, EA_N, support_displacement_m);
+}
+
+/* Samples of one load case. */
+typedef struct {
+    hf_montecarlo *t;
+    const hf_montecarlo_load_case *load_case;
+} loaded_samples;
+
+/* Makes the errors of sample i in a load case, as an hf_built_sample. They are those of the same sample without load
+ * case. The temperature of the load case changes the lengths as cut. */
+static void make_loaded(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+{
+    const loaded_samples *l = context;
+    const hf_montecarlo *t = l->t;
+    const hf_model *m = &t->built->model;
+    const double *rise_K = l->load_case->load_case->rise_K, *expansion_per_K = l->load_case->expansion_per_K;
+    memcpy(cut_m, m->target, (size_t)m->n_cable * sizeof *cut_m);
+    hf_built_errors_apply(&t->errors, t->scale, t->z + (size_t)(i - t->first) * t->n_z, cut_m, EA_N,
+                          support_displacement_m);
+    for (int e = 0; e < m->n_cable; e++)
+        if (rise_K[e] != 0) cut_m[e] *= 1 + expansion_per_K[e] * rise_K[e];
 }
 
 /* ---- measures ---- */
@@ -135,21 +217,20 @@ static hf_status measure_pattern(const hf_montecarlo *t, const hf_built_shape *i
 
 /* Measures the surface of a sample. A fit that does not converge gives NaN, and so does its gain loss. Neither meets a
  * requirement. */
-static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, double *value)
+static void measure_surface(hf_montecarlo *t, const hf_built_shape *shape, hf_surface_paths *is, double *value)
 {
-    hf_surface_paths is;
     if (hf_surface_measure_near(&t->design, t->surface, t->facets, &t->built->model, shape->position_m,
-                                shape->tension_N, &is) != HF_OK ||
+                                shape->tension_N, is) != HF_OK ||
         (t->beam && measure_pattern(t, shape, &value[HF_TOLERANCE_PATTERN_LOSS]) != HF_OK)) {
         t->has_no_memory = true;
         return;
     }
-    value[HF_TOLERANCE_HALF_PATH] = is.nodes_m;
-    value[HF_TOLERANCE_FIT_HALF_PATH] = is.nodes_fit_m;
+    value[HF_TOLERANCE_HALF_PATH] = is->nodes_m;
+    value[HF_TOLERANCE_FIT_HALF_PATH] = is->nodes_fit_m;
     bool has_facets = t->facets && t->facets->n_facet > 0;
     if (has_facets) {
-        value[HF_TOLERANCE_FACET_HALF_PATH] = is.facets_m;
-        value[HF_TOLERANCE_FACET_FIT_HALF_PATH] = is.facets_fit_m;
+        value[HF_TOLERANCE_FACET_HALF_PATH] = is->facets_m;
+        value[HF_TOLERANCE_FACET_FIT_HALF_PATH] = is->facets_fit_m;
     }
     for (int k = 0; k < (has_facets ? 4 : 2); k++)
         value[HF_TOLERANCE_GAIN_LOSS + k] = loss_dB(t, value[HF_TOLERANCE_HALF_PATH + k]);
@@ -170,15 +251,35 @@ static double psi_m_of(const hf_montecarlo *t, const hf_built_shape *shape, cons
     return m->n_inner_node > 0 ? sqrt(sum / m->n_inner_node) : (double)NAN;
 }
 
+static double *row_of(const hf_montecarlo *t, long i)
+{
+    return t->row + (size_t)(i - t->first) * (size_t)t->n_value;
+}
+
+/* Measures what the rows of `requirements` need of a sample in one load case. All nodes count in psi. */
+static void measure_required(const hf_montecarlo *t, const hf_model *m, int state, const hf_built_shape *shape,
+                             const hf_form_result *r, const hf_surface_paths *paths, double *row)
+{
+    const hf_required_shape of = {.model = m,
+                                  .position_m = shape->position_m,
+                                  .tension_N = shape->tension_N,
+                                  .displacement_m = shape->displacement_m,
+                                  .n_loose = r->n_loose,
+                                  .paths = *paths};
+    hf_required_measure(t->required, true, state, &of, row + hf_montecarlo_value_at(t->required, state, false),
+                        row + hf_montecarlo_value_at(t->required, state, true));
+}
+
 /* Measures the shape of sample i and writes its row, as an hf_built_take. */
 static void take_sample(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
 {
     hf_montecarlo *t = context;
     const hf_model *m = &t->built->model;
-    double *row = t->row + (i - t->first) * HF_TOLERANCE_COLUMNS, *value = row + HF_TOLERANCE_FIRST;
+    double *row = row_of(t, i), *value = row + HF_TOLERANCE_FIRST;
+    hf_surface_paths paths = {NAN, NAN, NAN, NAN};
     row[HF_TOLERANCE_STATUS] = r->status;
-    for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
-        value[k] = (double)NAN;
+    for (int k = HF_TOLERANCE_FIRST; k < t->n_value; k++)
+        row[k] = (double)NAN;
     if (r->status != HF_OK) return;
     value[HF_TOLERANCE_PSI] = psi_m_of(t, shape, r);
     value[HF_TOLERANCE_SLACK] = r->n_slack;
@@ -187,7 +288,23 @@ static void take_sample(void *context, long i, const hf_built_shape *shape, cons
     for (int e = 0; e < m->n_cable; e++)
         min_N = fmin(min_N, shape->tension_N[e]);
     value[HF_TOLERANCE_MIN_TENSION] = min_N;
-    if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, value);
+    if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, &paths, value);
+    if (t->required) measure_required(t, m, 0, shape, r, &paths, row);
+}
+
+/* Measures the shape of sample i in a load case, as an hf_built_take. */
+static void take_loaded(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
+{
+    const loaded_samples *l = context;
+    hf_montecarlo *t = l->t;
+    const hf_montecarlo_load_case *c = l->load_case;
+    hf_surface_paths paths = {NAN, NAN, NAN, NAN};
+    if (r->status != HF_OK) return; /* the values are NaN already */
+    if (hf_required_needs_surface(t->required, true, c->state) &&
+        hf_surface_measure_near(&c->design, t->surface, t->facets, &c->built.model, shape->position_m, shape->tension_N,
+                                &paths) != HF_OK)
+        t->has_no_memory = true;
+    measure_required(t, &c->built.model, c->state, shape, r, &paths, row_of(t, i));
 }
 
 /* ---- first order ---- */
@@ -207,11 +324,24 @@ static void predict(void *context, int room, int i)
                                move + (size_t)k * l->n_dof);
     hf_built_linear_apply(l, NULL, n, strain, NULL, move, more);
     for (int k = 0; k < n; k++)
-        t->row[(first + k) * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_LINEAR_PSI] =
+        t->row[(first + k) * t->n_value + HF_TOLERANCE_LINEAR_PSI] =
             hf_covariance_psi_m(l, move + (size_t)k * l->n_dof);
 }
 
 /* ---- samples ---- */
+
+static void find_margins(hf_montecarlo *t, int n)
+{
+    const hf_required *q = t->required;
+    const size_t stride = 2 * (size_t)q->n_column;
+    int state, column;
+    for (int i = 0; i < n; i++) {
+        double *row = t->row + (size_t)i * (size_t)t->n_value;
+        for (int k = 0; k < q->n_share; k++)
+            row[hf_montecarlo_margin_at(k)] =
+                hf_required_margin(q, q->share[k], row + hf_montecarlo_value_at(q, 0, false), stride, &state, &column);
+    }
+}
 
 hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
 {
@@ -221,6 +351,12 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
     if (t->directions.n) hf_directions_points(&t->directions, first, n, t->point);
     hf_built_batch_run(t->batch, t->varies, first, n, make_sample, take_sample, t);
     hf_parallel_each(hf_built_batch_threads(t->batch), (n + AT_ONCE - 1) / AT_ONCE, predict, t);
+    for (int k = 0; k < t->n_load_case; k++) {
+        loaded_samples loaded = {t, &t->load_case[k]};
+        if (loaded.load_case->batch)
+            hf_built_batch_run(loaded.load_case->batch, t->varies, first, n, make_loaded, take_loaded, &loaded);
+    }
+    if (t->required) find_margins(t, n);
     if (hf_built_must_stop(t->built)) return HF_INTERRUPTED;
     return t->has_no_memory ? HF_NO_MEMORY : HF_OK;
 }
@@ -253,7 +389,7 @@ static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reac
         int count = n - first < t->n_chunk ? (int)(n - first) : t->n_chunk;
         HF_TRY(hf_montecarlo_run(t, scale, first, count));
         for (int i = 0; i < count; i++)
-            met += hf_montecarlo_meets_all(t->settings, t->row + i * HF_TOLERANCE_COLUMNS);
+            met += hf_montecarlo_meets_all(t->settings, t->row + i * t->n_value);
         failed = first + count - met;
         *reaches = (double)met >= needed;
         if (*reaches || (double)(n - failed) < needed) break; /* the remaining samples cannot change the answer */

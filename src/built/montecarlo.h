@@ -2,12 +2,23 @@
 #pragma once
 
 #include "built/directions.h"
+#include "built/required.h"
 #include <hifdm/built_batch.h>
 #include "surface/gain.h"
 #include "surface/surface_measure.h"
 #include <hifdm/tolerance.h>
 
 #include <stdatomic.h>
+
+/* The samples of one load case. */
+typedef struct {
+    int state;                     /* 1 + number of the load case */
+    const hf_load_case *load_case; /* its temperatures */
+    const double *expansion_per_K; /* [n_cable] */
+    hf_built built;                /* the nominal net in this load case */
+    hf_built_batch *batch;         /* NULL: the nominal net has no shape in this load case */
+    hf_surface_design design;      /* starting values of the best fits of its samples */
+} hf_montecarlo_load_case;
 
 /* Holds everything that samples need. It must not be moved in memory, because its members point to each other. */
 typedef struct {
@@ -28,7 +39,10 @@ typedef struct {
     long first;   /* sample of the first row */
     /* Present number of rows. */
     int n_now;
-    double *row;     /* [n_chunk][HF_TOLERANCE_COLUMNS] results of the samples */
+    /* Values of a row: HF_TOLERANCE_COLUMNS and, with required, the margins [n_share] of its rows with a share, then
+     * value [n_column] and item [n_column] of each load case. */
+    int n_value;
+    double *row;     /* [n_chunk][n_value] results of the samples */
     double *z;       /* [n_chunk][n_z] numbers of each sample */
     double *point;   /* [n_chunk][directions.n] points of Sobol's sequence */
     double *scratch; /* [n_thread][n_room] scratch of each thread */
@@ -39,7 +53,10 @@ typedef struct {
     /* Reports each scale before its yield is computed; may be NULL. */
     void (*tell)(void *context, double scale);
     void *tell_context;
-    void *block;
+    const hf_required *required; /* NULL: nothing is required of samples */
+    int n_load_case;
+    hf_montecarlo_load_case *load_case; /* [n_load_case] load cases that samples need */
+    void *block, *required_block;
 } hf_montecarlo;
 
 /* Makes the nominal net's linear model, its errors and their covariance, for samples in n_thread threads (0: all
@@ -50,6 +67,22 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *settings, const hf_b
                                const hf_surface_settings *surface, const hf_facets *facets, const hf_built_heat *heat,
                                int n_thread, hf_montecarlo *montecarlo);
 void hf_montecarlo_free(hf_montecarlo *montecarlo);
+
+/* Adds to the samples what rows of `requirements` need: the figures, and the load cases. Call it before the first
+ * sample. attachment_move_m [n load cases][3 n_attachment]: displacements of the attachments by the truss alone; NULL
+ * without a truss. All arguments are borrowed. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
+hf_status hf_montecarlo_require(hf_montecarlo *montecarlo, const hf_required *required, const double *attachment_move_m,
+                                hf_messages *messages);
+
+/* Returns the offset in a row of the margin of share row k, and of the values or the items of a load case. */
+static inline size_t hf_montecarlo_margin_at(int k)
+{
+    return (size_t)(HF_TOLERANCE_COLUMNS + k);
+}
+static inline size_t hf_montecarlo_value_at(const hf_required *q, int state, bool is_item)
+{
+    return (size_t)(HF_TOLERANCE_COLUMNS + q->n_share + (2 * state + is_item) * q->n_column);
+}
 
 /* Returns whether samples have a value of this measure. */
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure);

@@ -29,12 +29,12 @@ static hf_status visit_rows(const hf_statistics_rows *rows, void (*take)(void *c
 {
     double *row;
     void *block;
-    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * HF_TOLERANCE_COLUMNS));
+    hf_status status = HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * (size_t)rows->n_value));
     for (long first = 0; first < rows->n && status == HF_OK; first += BLOCK) {
         int n = rows->n - first < BLOCK ? (int)(rows->n - first) : BLOCK;
         status = rows->read(rows->context, first, n, row);
         for (int i = 0; i < n && status == HF_OK; i++)
-            take(context, row + i * HF_TOLERANCE_COLUMNS);
+            take(context, row + i * rows->n_value);
     }
     hf_arena_free_block(block);
     return status;
@@ -366,5 +366,72 @@ hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows 
     to->bin_high_m = to->figure[HF_TOLERANCE_PSI].max;
     for (int k = 0; k < HF_TOLERANCE_BINS; k++)
         to->bin[k] = (double)s.bin[k] / (double)s.n_both;
+    return HF_OK;
+}
+
+/* ---- requirements ---- */
+
+/* Looks for the samples that a verdict describes. */
+typedef struct {
+    const hf_required *required;
+    int row;       /* row of the requirements */
+    size_t at;     /* of its margin in a row of a sample */
+    long i, n_met; /* number of the present sample; samples that meet the row */
+    double quantile;
+    bool has_quantile; /* the sample with the margin `quantile` was found */
+    hf_requirement_verdict *to;
+} search;
+
+static void count_met(void *context, const double *row)
+{
+    search *s = context;
+    s->n_met += row[s->at] >= 0;
+    s->i++;
+}
+
+static void note_sample(void *context, const double *row)
+{
+    search *s = context;
+    const hf_required *q = s->required;
+    const double *value = row + hf_montecarlo_value_at(q, 0, false), *item = row + hf_montecarlo_value_at(q, 0, true);
+    const size_t stride = 2 * (size_t)q->n_column;
+    if (!s->has_quantile && row[s->at] == s->quantile) {
+        s->has_quantile = true;
+        hf_required_note(q, s->row, false, value, item, stride, s->to);
+    }
+    if (s->to->worst_sample < 0 || row[s->at] < s->to->worst_margin) {
+        s->to->worst_sample = s->i;
+        hf_required_note(q, s->row, true, value, item, stride, s->to);
+    }
+    s->i++;
+}
+
+/* The quantile is the margin of the first sample that the share does not let fail. Its sign therefore agrees with the
+ * comparison of yield and share. */
+static hf_status judge_share(const hf_required *q, int k, const hf_statistics_rows *rows, hf_requirement_verdict *to)
+{
+    const hf_requirement_settings *r = &q->row[q->share[k]];
+    search s = {.required = q, .row = q->share[k], .at = hf_montecarlo_margin_at(k), .to = to};
+    long may_fail = (long)floor((1 - r->share) * (double)rows->n * (1 + 1e-12)), rank = may_fail + 1;
+    if (rank > rows->n) rank = rows->n;
+    to->worst_sample = -1;
+    to->error_bound = (double)NAN;
+    HF_TRY(hf_statistics_order(rows, (int)s.at, -(double)INFINITY, 1, &rank, &s.quantile));
+    HF_TRY(visit_rows(rows, count_met, &s));
+    s.i = 0;
+    HF_TRY(visit_rows(rows, note_sample, &s));
+    to->yield = (double)s.n_met / (double)rows->n;
+    hf_statistics_interval(rows->n, s.n_met, &to->yield_low, &to->yield_high);
+    to->verdict = r->share == 0               ? HF_VERDICT_NONE
+                  : to->yield_low >= r->share ? HF_VERDICT_PASS
+                  : to->yield_high < r->share ? HF_VERDICT_FAIL
+                                              : HF_VERDICT_UNDECIDED;
+    return HF_OK;
+}
+
+hf_status hf_statistics_judge(const hf_montecarlo *t, const hf_statistics_rows *rows, hf_requirement_verdict *verdict)
+{
+    for (int k = 0; t->required && k < t->required->n_share; k++)
+        HF_TRY(judge_share(t->required, k, rows, &verdict[t->required->share[k]]));
     return HF_OK;
 }

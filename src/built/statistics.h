@@ -4,7 +4,7 @@
 
 #include "built/montecarlo.h"
 
-/* Reads the rows first to first + n - 1 into row [n][HF_TOLERANCE_COLUMNS]. Returns HF_OK, or a status with a
+/* Reads the rows first to first + n - 1 into row [n][n_value]. Returns HF_OK, or a status with a
  * message. */
 typedef hf_status hf_statistics_read(void *context, long first, int n, double *row);
 
@@ -12,12 +12,18 @@ typedef struct {
     long n; /* number of rows */
     hf_statistics_read *read;
     void *context;
+    int n_value; /* values of a row */
 } hf_statistics_rows;
 
 /* Computes all members of the summary except those of time and of the scale. Returns HF_OK, HF_NO_MEMORY, or a status
  * of rows->read. */
 hf_status hf_statistics_sum_up(const hf_montecarlo *montecarlo, const hf_statistics_rows *rows,
                                hf_tolerance_summary *summary);
+
+/* Gives the verdicts on the rows of montecarlo->required that have a share. verdict [required->n]: the other rows are
+ * not changed. Returns HF_OK, HF_NO_MEMORY, or a status of rows->read. */
+hf_status hf_statistics_judge(const hf_montecarlo *montecarlo, const hf_statistics_rows *rows,
+                              hf_requirement_verdict *verdict);
 
 /* Finds the values of n_rank ranks, 1 to the number of rows, in a column in which NaN counts as `missing`. The values
  * are exact. Each of four passes over the rows finds 16 more bits of each value. Returns HF_OK, HF_NO_MEMORY, or a

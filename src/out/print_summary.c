@@ -550,6 +550,7 @@ static void print_end(const hf_summary *s, const char *path, hf_print_style styl
 void hf_print_summary(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
 {
     hf_stage result = hf_store_result_stage(s);
+    hf_print_requirements(s, style, f);
     if (style.has_colour) fputs(HF_PRINT_BOLD, f);
     hf_print_answer(s, f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);

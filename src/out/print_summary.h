@@ -3,6 +3,10 @@
 
 #include "out/print.h"
 
+/* Prints the verdict and a table of the requirements: all that are not passed and the tightest others, with `verbose`
+ * all. Prints nothing without requirements. */
+void hf_print_requirements(const hf_summary *summary, hf_print_style style, FILE *file);
+
 /* Prints the answer in one line without its newline: psi or the objectives, their reduction, and the frequency of 1 dB
  * gain loss. When a run failed after its form-finding, the line begins with the reason and names the design that the
  * figures describe. */

@@ -11,6 +11,7 @@
 
 #include "base/arena.h"
 #include "case/config_fault.h"
+#include "solve/certificate.h"
 #include "solve/coupling.h"
 
 #include <math.h>
@@ -136,9 +137,11 @@ hf_status hf_load_case_stage_rest_by_heat(const hf_problem *p, double *move_m_pe
     return status;
 }
 
-static hf_status run_load_case(const hf_problem *p, const hf_load_case *load_case, hf_load_case_stage *c,
-                               hf_store *store, hf_load_case_summary *s, hf_messages *messages)
+static hf_status run_load_case(hf_run *r, int k, hf_load_case_summary *s, hf_messages *messages)
 {
+    const hf_problem *p = &r->problem;
+    const hf_load_case *load_case = &p->load_cases.load_case[k];
+    hf_load_case_stage *c = &r->cases;
     bool has_truss = p->settings.has_truss;
     hf_frame_load own = {0};
     hf_built_net net;
@@ -153,14 +156,17 @@ static hf_status run_load_case(const hf_problem *p, const hf_load_case *load_cas
                        c->move_m, c->load_N, &net);
     hf_built_solve(&c->built, &net, &c->workspace, &s->result);
     if (s->result.status != HF_OK) return HF_OK;
+    hf_model loaded = c->built.model;
+    loaded.load_N = c->load_N;
+    if (r->requirements.required.nominal >> (1 + k) & 1u) hf_certify(&loaded, &c->workspace, &s->result);
     if (has_truss) {
-        hf_model loaded = c->built.model;
-        loaded.load_N = c->load_N;
         hf_coupling_forces(&loaded, &c->workspace);
         status = hf_carrier_load(&p->carrier, c->workspace.attachment_force_N, &own, &truss);
         if (status != HF_OK) hf_error(messages, status, "out of memory for the forces in the truss");
     }
-    if (status == HF_OK) status = keep_shape(p, c, store, has_truss ? &truss : NULL, s, messages);
+    if (status == HF_OK) status = keep_shape(p, c, r->store, has_truss ? &truss : NULL, s, messages);
+    if (status == HF_OK)
+        hf_requirements_stage_take(&r->requirements, 1 + k, &loaded, &c->workspace, &s->result, &s->surface);
     hf_carrier_state_free(&truss);
     return status;
 }
@@ -190,7 +196,7 @@ hf_status hf_stage_load_cases(hf_run *r, hf_summary *summary, hf_messages *messa
         *s = (hf_load_case_summary){.result.status = HF_NOT_EVALUATED};
         snprintf(s->name, sizeof s->name, "%s", p->load_cases.load_case[k].name);
         s->tension_min_N = s->tension_max_N = s->displacement_rms_m = s->member_force_max_N = (double)NAN;
-        HF_TRY(run_load_case(p, &p->load_cases.load_case[k], c, r->store, s, messages));
+        HF_TRY(run_load_case(r, k, s, messages));
         if (hf_run_must_stop(r)) return HF_INTERRUPTED;
         summary->n_load_case = k + 1;
         warn(s, messages);

@@ -8,6 +8,7 @@
  *                   or a front                                    (stages_front.c)
  *                   load cases of the as-built net                (load_case_stage.c)
  *                   samples of the as-built net                   (tolerance_stage.c)
+ *                   verdicts on the requirements                  (requirements_stage.c)
  *     finish        doubts about the result, summary, finished file
  *
  * Each stage measures and stores its shape. A run that is told to stop publishes its file, and the same command resumes
@@ -54,7 +55,10 @@ static hf_status prepare(hf_run *r, hf_summary *s, hf_messages *messages)
         return hf_error(messages, HF_BAD_USAGE,
                         "%s: this file has a `sweep` section. Run the study with 'hifdm sweep %s'", q->case_path,
                         q->case_path);
+    hf_status checked = hf_requirements_stage_check(&r->problem, messages);
     HF_TRY(hf_tolerance_stage_check(&r->problem, part->of_tolerance, messages));
+    HF_TRY(checked);
+    HF_TRY(hf_requirements_stage_open(&r->problem, &r->requirements, messages));
     if (q->seed) settings->optimize.seed = *q->seed;
     if (q->seed && !settings->has_optimize)
         hf_warning(messages, "the option --seed has no effect, because the case has no `optimize` section");
@@ -117,7 +121,7 @@ static hf_status end_unfinished(hf_run *r, const hf_summary *s, hf_status status
     return status;
 }
 
-enum { STAGES_MAX = 6 };
+enum { STAGES_MAX = 7 };
 
 /* Lists the stages of the case. Returns their number; *n_design is that of the stages that find the design. */
 static int list_stages(hf_run *r, hf_run_stage *stage[STAGES_MAX], int *n_design)
@@ -134,6 +138,7 @@ static int list_stages(hf_run *r, hf_run_stage *stage[STAGES_MAX], int *n_design
     *n_design = n;
     if (r->problem.load_cases.n) stage[n++] = hf_stage_load_cases;
     if (c->has_tolerance) stage[n++] = hf_stage_samples;
+    if (c->n_requirement > 0) stage[n++] = hf_stage_verdicts;
     return n;
 }
 
@@ -215,6 +220,7 @@ static void run_free(hf_run *r, hf_messages *messages)
     hf_carrier_state_free(&r->truss);
     hf_places_free(&r->places);
     hf_load_case_stage_free(&r->cases);
+    hf_requirements_stage_free(&r->requirements);
     hf_problem_free(&r->problem);
     free(r);
 }

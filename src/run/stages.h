@@ -6,6 +6,7 @@
  *     stages_front.c     front of the objectives
  *     load_case_stage.c  load cases of the as-built net
  *     tolerance_stage.c  samples of the as-built net
+ *     requirements_stage.c  verdicts on the rows of requirements
  *     stages_measure.c   measures and far field of a shape, for all stages
  *
  * A stage returns HF_INTERRUPTED if the run was told to stop before its end; run.c then publishes what is stored. Other
@@ -14,6 +15,7 @@
 
 #include "run/diagnose.h"
 #include "run/load_case_stage.h"
+#include "run/requirements_stage.h"
 #include "run/take_point.h"
 #include <hifdm/optimiser.h>
 #include <hifdm/run.h>
@@ -31,8 +33,9 @@ typedef struct {
     hf_carrier_state truss;    /* of the truss, under the shape of the result */
     const hf_workspace *shape; /* workspace that holds that shape; NULL: there is none */
     hf_load_case_stage cases;  /* as-built net of the design, if there are load cases */
-    hf_places places;          /* after form-finding, if an optimisation follows */
-    hf_optimiser_plan plan;    /* the algorithms of optimize.method */
+    hf_requirements_stage requirements;
+    hf_places places;       /* after form-finding, if an optimisation follows */
+    hf_optimiser_plan plan; /* the algorithms of optimize.method */
     hf_optimiser optimiser;
     double *design;                      /* [n_variable] best design so far, of the problem or of the population */
     hf_front front;                      /* front of optimize.front */
@@ -77,6 +80,8 @@ hf_run_stage hf_stage_load_cases;
 /* Finds all samples of the as-built net, or those of the task, and writes their statistics into the summary. Also
  * returns HF_BAD_CASE, HF_SINGULAR or HF_EXISTS. */
 hf_run_stage hf_stage_samples;
+/* Gives the verdicts on the rows of `requirements`. */
+hf_run_stage hf_stage_verdicts;
 
 /* Measures the shape in the workspace as that of `stage`: the tensions of its sets, the limits that a design reaches
  * and, for a case with a section `surface`, the surface and its far field. Returns HF_OK; HF_NO_MEMORY; HF_INTERRUPTED

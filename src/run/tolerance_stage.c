@@ -215,7 +215,8 @@ hf_status hf_tolerance_stage_look(const hf_run_request *q, const hf_problem *p, 
 typedef struct {
     const hf_run_request *request;
     const hf_problem *problem;
-    const hf_workspace *shape; /* of the result, an equilibrium of problem->model */
+    const hf_requirements_stage *requirements; /* NULL: none */
+    const hf_workspace *shape;                 /* of the result, an equilibrium of problem->model */
     hf_built built;
     hf_montecarlo montecarlo;
     hf_gain_beam beam; /* of the net at the target positions, used for all shapes */
@@ -291,12 +292,27 @@ static hf_status open_samples(job *j, const char *beside, hf_messages *messages)
     const char *output = *beside && !q->part.of_sweep ? beside : NULL; /* points of a sweep begin anew */
     if (identify(p, &j->built, identity) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     HF_TRY(hf_samples_open(output, *beside ? beside : NULL, q->part.task, is_task ? q->part.tasks : 0, identity,
-                           q->output.restart, p->settings.tolerance.samples, j->montecarlo.n_chunk, &j->samples,
-                           messages));
+                           q->output.restart, p->settings.tolerance.samples, j->montecarlo.n_chunk,
+                           j->montecarlo.n_value, &j->samples, messages));
     j->samples.stop = q->control.stop_requested;
     if (output && q->part.tasks > 0 && !is_task)
         HF_TRY(hf_samples_collect(&j->samples, output, q->part.tasks, q->output.restart));
     return HF_OK;
+}
+
+/* Adds to the samples what the requirements need. */
+static hf_status require(job *j, hf_messages *messages)
+{
+    const hf_problem *p = j->problem;
+    double *move_m;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(move_m, 3 * (size_t)p->load_cases.n * (size_t)p->model.n_attachment)));
+    hf_status status = p->settings.has_truss ? hf_load_case_stage_rest(p, move_m) : HF_OK;
+    if (status == HF_OK)
+        status = hf_montecarlo_require(&j->montecarlo, &j->requirements->required,
+                                       p->settings.has_truss ? move_m : NULL, messages);
+    hf_arena_free_block(block);
+    return status;
 }
 
 static hf_status open_montecarlo(job *j, hf_messages *messages)
@@ -316,6 +332,7 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
         if (status == HF_OK)
             status = hf_montecarlo_create(t, &j->built, &p->surface, &p->facets, &heat, j->request->control.threads,
                                           &j->montecarlo);
+        if (status == HF_OK && j->requirements) status = require(j, messages);
         if (status == HF_NO_MEMORY) hf_error(messages, status, "tolerance: out of memory");
         if (status == HF_SINGULAR)
             hf_error(messages, status,
@@ -397,10 +414,12 @@ static int scale_samples(const hf_tolerance_settings *t)
 static hf_status sum_up(job *j, hf_store *store, hf_summary *summary, hf_messages *messages)
 {
     const hf_tolerance_settings *t = &j->problem->settings.tolerance;
-    const hf_statistics_rows rows = {j->samples.n, hf_samples_read, &j->samples};
+    const hf_statistics_rows rows = {j->samples.n, hf_samples_read, &j->samples, j->montecarlo.n_value};
     hf_tolerance_summary *to = summary->tolerance = calloc(1, sizeof *to);
     if (!to) return hf_error(messages, HF_NO_MEMORY, "tolerance: out of memory");
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
+    if (status == HF_OK && j->requirements)
+        status = hf_requirements_stage_judge_samples(j->requirements, &j->montecarlo, &rows, summary, messages);
     if (status == HF_OK && t->required_yield > 0) {
         to->scale_samples = scale_samples(t);
         j->montecarlo.tell = report_scale;
@@ -517,7 +536,11 @@ static hf_status work_off(job *j, hf_run *r, hf_summary *summary, hf_messages *m
 
 hf_status hf_stage_samples(hf_run *r, hf_summary *summary, hf_messages *messages)
 {
-    job j = {.request = r->request, .problem = &r->problem, .shape = r->shape, .begin_s = hf_clock_s()};
+    job j = {.request = r->request,
+             .problem = &r->problem,
+             .requirements = &r->requirements,
+             .shape = r->shape,
+             .begin_s = hf_clock_s()};
     hf_status status = work_off(&j, r, summary, messages);
     job_free(&j);
     return status;

@@ -195,6 +195,10 @@ void hf_layout_pass_taken(hf_hdf5 *io, bool writes, const hf_front_origin *taken
 void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary);
 
+/* layout_requirements: the verdicts on the rows of `requirements`, in /requirements. Without verdicts nothing is
+ * written. */
+void hf_layout_pass_requirements(hf_hdf5 *io, bool writes, hf_summary *summary);
+
 /* layout_truss: hf_store_truss, hf_store_read_truss, and the parts of a truss in a load case. hf_layout_make_truss
  * makes the group `path` of a truss with its groups node and member, and returns it. */
 hid_t hf_layout_make_truss(hf_hdf5 *io, const char *path);

@@ -14,7 +14,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#define ROW_BYTES (HF_TOLERANCE_COLUMNS * sizeof(double))
 #define OF_CASE 32 /* characters of the identity that are known before the design is */
 
 static void name_journal(const char *result, int task, int tasks, char name[HF_SAMPLES_NAME_SIZE])
@@ -25,6 +24,11 @@ static void name_journal(const char *result, int task, int tasks, char name[HF_S
         snprintf(name, HF_SAMPLES_NAME_SIZE, "%s.tolerance", result);
 }
 
+static size_t row_bytes(const hf_samples *s)
+{
+    return (size_t)s->n_value * sizeof(double);
+}
+
 static hf_status fail_rows(hf_samples *s, const char *what, const char *why)
 {
     return hf_error(s->messages, HF_IO, "%s: cannot %s the scratch file of samples: %s", s->name, what, why);
@@ -33,8 +37,8 @@ static hf_status fail_rows(hf_samples *s, const char *what, const char *why)
 static hf_status keep_rows(hf_samples *s, int chunk, const void *row)
 {
     int n;
-    off_t at = (off_t)hf_samples_first(s, chunk, &n) * (off_t)ROW_BYTES;
-    if (hf_file_io_write_at(s->rows, row, (size_t)n * ROW_BYTES, at) != 0)
+    off_t at = (off_t)hf_samples_first(s, chunk, &n) * (off_t)row_bytes(s);
+    if (hf_file_io_write_at(s->rows, row, (size_t)n * row_bytes(s), at) != 0)
         return fail_rows(s, "write", strerror(errno));
     s->n_have += !s->has[chunk];
     s->has[chunk] = 1;
@@ -47,7 +51,7 @@ static hf_status take_chunk(void *context, int chunk, const void *payload, size_
     hf_samples *s = context;
     int n = 0;
     if (chunk >= 0 && chunk < s->n_all) hf_samples_first(s, chunk, &n);
-    if (n == 0 || bytes != (size_t)n * ROW_BYTES)
+    if (n == 0 || bytes != (size_t)n * row_bytes(s))
         return hf_error(s->messages, HF_EXISTS,
                         "%s: the journal has %zu bytes of chunk %d, but this case has no such chunk. Delete the "
                         "journal, or restart the run with --restart",
@@ -56,9 +60,10 @@ static hf_status take_chunk(void *context, int chunk, const void *payload, size_
 }
 
 hf_status hf_samples_open(const char *result, const char *beside, int task, int tasks, const char *identity,
-                          bool restart, long n, int n_chunk, hf_samples *s, hf_messages *messages)
+                          bool restart, long n, int n_chunk, int n_value, hf_samples *s, hf_messages *messages)
 {
-    *s = (hf_samples){.n = n, .n_chunk = n_chunk, .messages = messages, .journal.file = -1, .rows = -1};
+    *s = (hf_samples){
+        .n = n, .n_chunk = n_chunk, .n_value = n_value, .messages = messages, .journal.file = -1, .rows = -1};
     s->n_all = (int)((n + n_chunk - 1) / n_chunk);
     snprintf(s->identity, sizeof s->identity, "%s", identity);
     name_journal(result ? result : "samples", task, tasks, s->name);
@@ -120,7 +125,7 @@ hf_status hf_samples_add(hf_samples *s, int chunk, const double *row)
 {
     int n;
     hf_samples_first(s, chunk, &n);
-    const struct iovec piece = {(void *)(uintptr_t)row, (size_t)n * ROW_BYTES}; /* the row is only read */
+    const struct iovec piece = {(void *)(uintptr_t)row, (size_t)n * row_bytes(s)}; /* the row is only read */
     if (s->journal.path) {
         HF_TRY(hf_journal_append(&s->journal, chunk, &piece, 1, s->messages));
         HF_TRY(hf_journal_tend(&s->journal, hf_clock_s(), s->messages));
@@ -131,9 +136,9 @@ hf_status hf_samples_add(hf_samples *s, int chunk, const double *row)
 hf_status hf_samples_read(void *context, long first, int n, double *row)
 {
     hf_samples *s = context;
-    size_t bytes = (size_t)n * ROW_BYTES;
+    size_t bytes = (size_t)n * row_bytes(s);
     if (s->stop && *s->stop) return HF_INTERRUPTED;
-    ssize_t got = hf_file_io_read_at(s->rows, row, bytes, (off_t)first * (off_t)ROW_BYTES);
+    ssize_t got = hf_file_io_read_at(s->rows, row, bytes, (off_t)first * (off_t)row_bytes(s));
     if (got < 0) return fail_rows(s, "read", strerror(errno));
     return got == (ssize_t)bytes ? HF_OK : fail_rows(s, "read", "it ends too early");
 }

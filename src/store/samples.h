@@ -15,6 +15,7 @@ typedef struct {
     const volatile sig_atomic_t *stop; /* NULL, or a flag: if *stop != 0, hf_samples_read returns HF_INTERRUPTED */
     long n;                            /* number of samples */
     int n_chunk;                       /* samples per chunk; the last chunk may have fewer */
+    int n_value;                       /* values of a sample */
     int n_have, n_all;                 /* number of chunks that are there, and of all chunks */
     unsigned char *has;                /* [n_all] 1: the chunk is there; owned */
     int rows;                          /* descriptor of the scratch file; -1: none */
@@ -29,7 +30,7 @@ typedef struct {
  * over, unless `restart`. Returns HF_OK; HF_EXISTS if the journal belongs to another case or is in use; HF_IO;
  * HF_NO_MEMORY. The caller calls hf_samples_close in any case. */
 hf_status hf_samples_open(const char *result, const char *beside, int task, int tasks, const char *identity,
-                          bool restart, long n, int n_chunk, hf_samples *samples, hf_messages *messages);
+                          bool restart, long n, int n_chunk, int n_value, hf_samples *samples, hf_messages *messages);
 
 /* Writes the identity of the samples: parts of the digest of the case and of the digest of its design. */
 void hf_samples_identify(const char of_case[65], const char of_design[65], char identity[65]);
@@ -50,7 +51,7 @@ static inline long hf_samples_first(const hf_samples *samples, int chunk, int *n
     return first;
 }
 
-/* Adds the rows of a chunk, row [n][HF_TOLERANCE_COLUMNS]. Returns HF_OK or HF_IO. If there is a journal, the rows
+/* Adds the rows of a chunk, row [n][n_value]. Returns HF_OK or HF_IO. If there is a journal, the rows
  * survive the end of this process after HF_OK. */
 hf_status hf_samples_add(hf_samples *samples, int chunk, const double *row);
 

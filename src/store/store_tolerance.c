@@ -6,6 +6,7 @@
 #include "store/store_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #define BLOCK 4096 /* samples that are read and written at a time */
 
@@ -30,15 +31,15 @@ static int list_columns(const hf_montecarlo *t, sample_column of[HF_TOLERANCE_CO
     return n;
 }
 
-static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_statistics_rows *rows)
+/* Writes the columns of all samples into a new group. */
+static hf_status write_columns(hf_hdf5 *io, const char *path, int n_column, sample_column *column,
+                               const hf_statistics_rows *rows)
 {
-    sample_column column[HF_TOLERANCE_COLUMNS];
-    int n_column = list_columns(t, column);
     double *row, *value;
     void *block;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * HF_TOLERANCE_COLUMNS), HF_ARRAY(value, BLOCK)));
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(row, BLOCK * (size_t)rows->n_value), HF_ARRAY(value, BLOCK)));
     const hsize_t chunk[1] = {rows->n < BLOCK ? (hsize_t)rows->n : BLOCK};
-    hid_t group = hf_hdf5_make_group(io, "/tolerance/sample");
+    hid_t group = hf_hdf5_make_group(io, path);
     for (int k = 0; k < n_column; k++)
         hf_hdf5_close(io, hf_hdf5_make_array(io, group, &column[k].array, chunk, false));
     hf_status status = io->status;
@@ -47,7 +48,7 @@ static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_sta
         status = rows->read(rows->context, first, n, row);
         for (int k = 0; k < n_column && status == HF_OK; k++) {
             for (int i = 0; i < n; i++)
-                value[i] = row[i * HF_TOLERANCE_COLUMNS + column[k].column];
+                value[i] = row[i * rows->n_value + column[k].column];
             column[k].array.dims[0] = (hsize_t)n;
             column[k].array.kind = HF_KIND_REAL; /* HDF5 converts the status */
             hf_hdf5_write_rows(io, group, &column[k].array, (hsize_t)first, value);
@@ -57,6 +58,36 @@ static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_sta
     hf_hdf5_close(io, group);
     hf_arena_free_block(block);
     return status;
+}
+
+static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_statistics_rows *rows)
+{
+    sample_column column[HF_TOLERANCE_COLUMNS];
+    int n_column = list_columns(t, column);
+    return write_columns(io, "/tolerance/sample", n_column, column, rows);
+}
+
+/* Writes the figures that requirements bound, for each load case in which samples need them. */
+static hf_status write_required(hf_hdf5 *io, const hf_montecarlo *t, const hf_statistics_rows *rows)
+{
+    const hf_required *q = t->required;
+    char name[HF_REQUIRED_COLUMNS][HF_REQUIRED_NAME_SIZE], path[HF_LAYOUT_LOAD_CASE_SIZE];
+    sample_column column[HF_REQUIRED_COLUMNS];
+    if (q) hf_hdf5_close(io, hf_hdf5_make_group(io, "/tolerance/load_case"));
+    for (int state = 0; q && state < q->n_state; state++) {
+        int n = 0;
+        for (int k = 0; k < q->n_column; k++) {
+            if (!(q->column[k].many >> state & 1u)) continue;
+            const char *units = hf_required_figure_unit[q->column[k].figure];
+            column[n].array =
+                (hf_hdf5_array){hf_required_column_name(&q->column[k], name[n]), HF_KIND_REAL, 1, {0}, units,
+                                "figure of each sample in this load case"};
+            column[n++].column = (int)hf_montecarlo_value_at(q, state, false) + k;
+        }
+        snprintf(path, sizeof path, "/tolerance/load_case/%s", hf_required_state_name(q, state));
+        if (n > 0) HF_TRY(write_columns(io, path, n, column, rows));
+    }
+    return HF_OK;
 }
 
 static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)
@@ -91,6 +122,7 @@ hf_status hf_store_tolerance(hf_store *s, const hf_montecarlo *t, const hf_stati
     hf_layout_renew(io, io->file, "/tolerance");
     hf_status status = write_first_order(io, t);
     if (status == HF_OK) status = write_samples(io, t, rows);
+    if (status == HF_OK) status = write_required(io, t, rows);
     if (status == HF_NO_MEMORY) hf_hdf5_no_memory(io);
     if (io->status == HF_OK) io->status = status; /* rows->read has reported the reason */
     return hf_hdf5_unlock(io->status);

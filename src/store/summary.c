@@ -19,6 +19,7 @@ void hf_summary_free(hf_summary *s)
     free(s->front);
     free(s->load_case);
     free(s->tolerance);
+    free(s->requirement);
     *s = (hf_summary){0};
 }
 

@@ -30,7 +30,7 @@ START_TEST(order_is_that_of_sorting)
         sorted[n++] = isnan(x) ? missing : x;
     }
     qsort(sorted, (size_t)n, sizeof *sorted, hf_compare_doubles);
-    const hf_statistics_rows rows = {N, read_numbers, row};
+    const hf_statistics_rows rows = {N, read_numbers, row, HF_TOLERANCE_COLUMNS};
     const long rank[5] = {1, n / 3, n / 2, n - 1, n};
     ck_assert_int_eq(hf_statistics_order(&rows, 4, missing, 5, rank, value), HF_OK);
     for (int k = 0; k < 5; k++)

@@ -268,7 +268,7 @@ static double *run_all(study *s, hf_tolerance_summary *to)
         ck_assert_int_eq(hf_montecarlo_run(&s->m, 1, first, n), HF_OK);
         memcpy(row + first * HF_TOLERANCE_COLUMNS, s->m.row, sizeof *row * HF_TOLERANCE_COLUMNS * (size_t)n);
     }
-    const hf_statistics_rows rows = {s->settings.samples, read_rows, row};
+    const hf_statistics_rows rows = {s->settings.samples, read_rows, row, HF_TOLERANCE_COLUMNS};
     ck_assert_int_eq(hf_statistics_sum_up(&s->m, &rows, to), HF_OK);
     return row;
 }
@@ -565,7 +565,7 @@ START_TEST(what_is_missing_is_the_worst)
         value[HF_TOLERANCE_LOOSE] = 0;
         value[HF_TOLERANCE_GAIN_LOSS] = i < 20 ? 0.5 : INFINITY;
     }
-    const hf_statistics_rows rows = {N, read_rows, row};
+    const hf_statistics_rows rows = {N, read_rows, row, HF_TOLERANCE_COLUMNS};
     const hf_tolerance_figures *psi = &to.figure[HF_TOLERANCE_PSI], *least = &to.figure[HF_TOLERANCE_MIN_TENSION];
     ck_assert_int_eq(hf_statistics_sum_up(&s.m, &rows, &to), HF_OK);
     ck_assert_int_eq(to.n_failed, FAILED);
@@ -578,7 +578,8 @@ START_TEST(what_is_missing_is_the_worst)
     ck_assert(isnan(to.figure[HF_TOLERANCE_GAIN_LOSS].mean) && isnan(to.figure[HF_TOLERANCE_GAIN_LOSS].deviation));
     for (int i = 0; i < 2; i++) /* one net: no deviation, so no interval; none: nothing at all */
         row[i * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI] = i ? (double)NAN : 1e-3;
-    const hf_statistics_rows one = {1, read_rows, row}, none = {1, read_rows, row + HF_TOLERANCE_COLUMNS};
+    const hf_statistics_rows one = {1, read_rows, row, HF_TOLERANCE_COLUMNS},
+                             none = {1, read_rows, row + HF_TOLERANCE_COLUMNS, HF_TOLERANCE_COLUMNS};
     ck_assert_int_eq(hf_statistics_sum_up(&s.m, &one, &to), HF_OK);
     ck_assert(psi->value[1] == 1e-3 && isnan(psi->mean_low) && isnan(psi->deviation));
     ck_assert(isnan(to.rms_psi_low_m) && isnan(to.rms_psi_high_m) && isnan(to.controlled_high_m));

@@ -177,7 +177,7 @@ START_TEST(samples_that_are_gone_are_told)
     hf_samples s;
     static double row[4 * HF_TOLERANCE_COLUMNS];
     volatile sig_atomic_t stop = 0;
-    ck_assert_int_eq(hf_samples_open(NULL, result_path(), -1, 0, "", false, 4, 4, &s, &m), HF_OK);
+    ck_assert_int_eq(hf_samples_open(NULL, result_path(), -1, 0, "", false, 4, 4, HF_TOLERANCE_COLUMNS, &s, &m), HF_OK);
     s.stop = &stop;
     ck_assert_int_eq(hf_samples_add(&s, 0, row), HF_OK);
     ck_assert_int_eq(hf_samples_read(&s, 0, 4, row), HF_OK);

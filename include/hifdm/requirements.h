@@ -1,0 +1,53 @@
+/* requirements - the verdicts on the rows of `requirements` (METHOD section 14).
+ * Stability: internal. This header may change in any version.
+ *
+ * A row bounds a figure of the nominal net or, with a share, of the as-built samples, in one or several load cases. The
+ * margin of a value is its signed distance from the nearer bound, in the unit of the figure. A value outside the bounds
+ * has a negative margin. The margin of a net is the minimum over the load cases of the row. */
+#pragma once
+
+#include <hifdm/api.h>
+#include <hifdm/settings.h>
+#include <stddef.h>
+
+HF_API_BEGIN
+
+/* X(name, word). The verdict on a row. HF_VERDICT_NONE: the row has no verdict, because its share is 0. */
+#define HF_VERDICTS(X) X(PASS, "pass") X(FAIL, "fail") X(UNDECIDED, "undecided") X(NONE, "none")
+#define HF_VERDICT_ENUMERATOR(name, word) HF_VERDICT_##name,
+typedef enum { HF_VERDICTS(HF_VERDICT_ENUMERATOR) HF_VERDICT_N } hf_verdict;
+#undef HF_VERDICT_ENUMERATOR
+extern const char *const hf_verdict_word[HF_VERDICT_N];
+
+#define HF_REQUIREMENT_ITEM_SIZE 256 /* size in bytes of the id of a cable or node */
+
+/* Contains the verdict on a row. NaN means that a number does not exist or is not known.
+ *
+ * Without a share, `value` is the value of the nominal net with the minimum margin, and error_bound is the bound of its
+ * numerical error. If the margin is within error_bound of 0, the verdict is undecided. With a share, `margin` is the
+ * quantile: the given share of the samples has at least this margin. The confidence interval of the yield contains the
+ * true yield with a probability of 95 %. If it contains the share, the verdict is undecided. The worst net is the
+ * nominal net or the sample with the minimum margin. */
+typedef struct {
+    hf_requirement_settings row; /* the row */
+    hf_verdict verdict;
+    double value, bound; /* value, and the bound that it is nearer to, in the unit of the figure */
+    /* signed distance of the value from the bound; the same relative to the bound, NaN if the bound is 0 */
+    double margin, relative_margin;
+    double error_bound;                  /* of the value of the nominal net */
+    double yield, yield_low, yield_high; /* share of the samples that meet the row, and its confidence interval */
+    /* the worst net: number of the sample, -1 without a share; margin, value, load case, cable or support ("": none) */
+    long worst_sample;
+    double worst_margin, worst_value;
+    char worst_load_case[HF_SET_NAME_SIZE], worst_item[HF_REQUIREMENT_ITEM_SIZE];
+} hf_requirement_verdict;
+
+/* Returns the verdict on all n rows: fail if a row fails, else undecided if a row is undecided, else pass. Returns
+ * HF_VERDICT_NONE if no row has a verdict. */
+hf_verdict hf_requirements_verdict(int n, const hf_requirement_verdict *verdict);
+
+/* Writes what a row is about to text[size], such as "tension of ties, all load cases, 95 % of samples". Returns
+ * text. */
+const char *hf_requirement_name(const hf_requirement_settings *row, char *text, size_t size);
+
+HF_API_END

@@ -1,0 +1,417 @@
+/* Implements required.h. Contents: columns, figures of a shape, error bounds, margins, verdicts. */
+#include "built/required.h"
+
+#include "base/arena.h"
+#include "base/elementary.h"
+#include "net/cable_pick.h"
+#include "solve/newton_matrix.h"
+#include <hifdm/metrics.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- columns ---- */
+
+static bool has_set(hf_required_figure figure)
+{
+    return figure == HF_REQUIRED_TENSION || figure == HF_REQUIRED_RATIO || figure == HF_REQUIRED_SLACK ||
+           figure == HF_REQUIRED_MASS;
+}
+
+/* Returns the bits of the load cases that a row selects. */
+static unsigned states_of(const hf_required *q, const hf_requirement_settings *r)
+{
+    if (!strcmp(r->load_case, "all")) return (1u << q->n_state) - 1;
+    int state = 0;
+    while (state + 1 < q->n_state && strcmp(hf_required_state_name(q, state), r->load_case) != 0)
+        state++;
+    return 1u << state;
+}
+
+/* Returns the column that a bound of row r needs, and adds it if it is new. `cable` are the cables of its set. */
+static int column_of(hf_required *q, const hf_requirement_settings *r, bool is_minimum, int n_cable, const int *cable,
+                     unsigned states)
+{
+    hf_required_column c = {.figure = r->figure,
+                            .is_minimum = is_minimum && r->figure == HF_REQUIRED_TENSION,
+                            .feed = r->feed,
+                            .set = r->set,
+                            .n_cable = n_cable,
+                            .cable = cable};
+    int k = 0;
+    for (; k < q->n_column; k++) {
+        const hf_required_column *old = &q->column[k];
+        if (old->figure == c.figure && old->is_minimum == c.is_minimum && old->feed == c.feed &&
+            old->n_cable == n_cable && !memcmp(old->cable, cable, (size_t)n_cable * sizeof *cable))
+            break;
+    }
+    if (k == q->n_column) q->column[q->n_column++] = c;
+    *(isnan(r->share) ? &q->column[k].nominal : &q->column[k].many) |= states;
+    return k;
+}
+
+hf_status hf_required_create(int n, const hf_requirement_settings *row, const hf_scene *scene,
+                             const hf_load_cases *load_cases, const double *mass_kg_per_m, hf_required *q)
+{
+    int *cable;
+    *q = (hf_required){.n = n,
+                       .row = row,
+                       .n_state = 1 + load_cases->n,
+                       .scene = scene,
+                       .load_cases = load_cases,
+                       .mass_kg_per_m = mass_kg_per_m};
+    if (n == 0) return HF_OK;
+    HF_TRY(HF_ARENA_ARRAYS(&q->block, HF_ARRAY(cable, (size_t)n * (size_t)scene->n_cable)));
+    for (int i = 0; i < n; i++, cable += scene->n_cable) {
+        const hf_requirement_settings *r = &row[i];
+        int n_cable = has_set(r->figure) ? hf_cable_pick(scene, r->set, cable) : 0;
+        q->states[i] = states_of(q, r);
+        q->low[i] = isnan(r->at_least) ? -1 : column_of(q, r, true, n_cable, cable, q->states[i]);
+        q->high[i] = isnan(r->at_most) ? -1 : column_of(q, r, false, n_cable, cable, q->states[i]);
+        *(isnan(r->share) ? &q->nominal : &q->many) |= q->states[i];
+        if (!isnan(r->share)) q->share[q->n_share++] = i;
+    }
+    return HF_OK;
+}
+
+void hf_required_free(hf_required *q)
+{
+    hf_arena_free_block(q->block);
+    *q = (hf_required){0};
+}
+
+const char *hf_required_state_name(const hf_required *q, int state)
+{
+    return state ? q->load_cases->load_case[state - 1].name : "nominal";
+}
+
+const char *hf_required_column_name(const hf_required_column *c, char name[HF_REQUIRED_NAME_SIZE])
+{
+    bool is_radio = c->figure == HF_REQUIRED_SURFACE || c->figure == HF_REQUIRED_FACETS;
+    const char *extreme = c->figure != HF_REQUIRED_TENSION ? "" : c->is_minimum ? "_min" : "_max";
+    snprintf(name, HF_REQUIRED_NAME_SIZE, "%s%s%s%s%s%s", hf_required_figure_word[c->figure], extreme,
+             is_radio ? "_" : "", is_radio ? hf_focus_word[c->feed] : "", *c->set ? "_" : "", c->set);
+    return name;
+}
+
+static bool is_needed(const hf_required_column *c, bool is_many, int state)
+{
+    return (is_many ? c->many : c->nominal) >> state & 1u;
+}
+
+bool hf_required_needs_surface(const hf_required *q, bool is_many, int state)
+{
+    bool needs = false;
+    for (int k = 0; k < q->n_column; k++)
+        needs |= is_needed(&q->column[k], is_many, state) &&
+                 (q->column[k].figure == HF_REQUIRED_SURFACE || q->column[k].figure == HF_REQUIRED_FACETS);
+    return needs;
+}
+
+/* ---- figures of a shape ---- */
+
+static double psi_m(const hf_required_shape *s)
+{
+    const hf_model *m = s->model;
+    double sum = 0;
+    int n = 0;
+    for (int k = 0; k < m->n_inner_node; k++) {
+        int row = m->inner_row[k];
+        if (s->loose && s->loose[row]) continue;
+        n++;
+        for (int c = 0; c < 3; c++) {
+            double d = s->position_m[c * m->n_node + row] - m->position_m[c * m->n_node + row];
+            sum += d * d;
+        }
+    }
+    return n > 0 ? sqrt(sum / n) : (double)NAN;
+}
+
+/* Returns the minimum or maximum tension of the set. *item becomes its cable. */
+static double extreme_N(const hf_required_column *c, const hf_required_shape *s, bool is_minimum, double *item)
+{
+    double worst_N = is_minimum ? INFINITY : -INFINITY;
+    for (int i = 0; i < c->n_cable; i++) {
+        double tension_N = s->tension_N[c->cable[i]];
+        if (is_minimum ? tension_N >= worst_N : tension_N <= worst_N) continue;
+        worst_N = tension_N;
+        *item = c->cable[i];
+    }
+    return worst_N;
+}
+
+static bool is_slack(const hf_required_shape *s, int e)
+{
+    return s->tension_N[e] < HF_SLACK_RATIO * s->model->reference_N;
+}
+
+static double count_slack(const hf_required_column *c, const hf_required_shape *s, double *item)
+{
+    int n = 0;
+    for (int i = 0; i < c->n_cable; i++)
+        if (is_slack(s, c->cable[i]) && n++ == 0) *item = c->cable[i];
+    return n;
+}
+
+/* Returns the ratio of maximum to minimum tension, INFINITY with a slack cable. *item is the cable of the minimum. */
+static double ratio_of(const hf_required_column *c, const hf_required_shape *s, double *item)
+{
+    double at_most, least_N = extreme_N(c, s, true, item), most_N = extreme_N(c, s, false, &at_most);
+    return is_slack(s, (int)*item) ? (double)INFINITY : most_N / least_N;
+}
+
+/* Returns the maximum displacement of an attachment by the forces of the net, m. *item is its node. */
+static double deflection_m(const hf_required_shape *s, double *item)
+{
+    const hf_model *m = s->model;
+    const double *d = s->displacement_m;
+    double most_m = -1;
+    for (int k = 0; k < m->n_attachment; k++, d += 3) {
+        double size_m = hf_norm(d[0], d[1], d[2]);
+        if (size_m <= most_m) continue;
+        most_m = size_m;
+        *item = m->node_of_row[m->attachment_row[k]];
+    }
+    return most_m < 0 ? (double)NAN : most_m;
+}
+
+/* Returns the maximum force of the net on a support, N. *item is its node. */
+static double pull_N(const hf_required_shape *s, double *item)
+{
+    const hf_model *m = s->model;
+    double most_N = -1;
+    for (int row = m->n_free; row < m->n_node; row++) {
+        double force[3] = {0}, unit[3];
+        for (int e = 0; e < m->n_cable; e++) {
+            int end = m->end_row[2 * e] == row ? 0 : 1;
+            if (m->end_row[2 * e + end] != row) continue;
+            hf_newton_matrix_direction(m, s->position_m, e, unit);
+            for (int c = 0; c < 3; c++)
+                force[c] += (end ? -1 : 1) * s->tension_N[e] * unit[c];
+        }
+        double size_N = hf_norm(force[0], force[1], force[2]);
+        if (size_N <= most_N) continue;
+        most_N = size_N;
+        *item = m->node_of_row[row];
+    }
+    return most_N < 0 ? (double)NAN : most_N;
+}
+
+static double mass_kg(const hf_required *q, const hf_required_column *c, const hf_required_shape *s)
+{
+    const hf_model *m = s->model;
+    double sum = 0, unit[3];
+    for (int i = 0; i < c->n_cable; i++) {
+        int e = c->cable[i];
+        double length_m = hf_newton_matrix_direction(m, s->position_m, e, unit),
+               EA_N = q->scene->EA_N ? q->scene->EA_N[e] : 0;
+        sum += q->mass_kg_per_m[e] * (EA_N > 0 ? length_m / (1 + s->tension_N[e] / EA_N) : length_m);
+    }
+    return sum;
+}
+
+static double figure_of(const hf_required *q, const hf_required_column *c, const hf_required_shape *s, double *item)
+{
+    const hf_surface_paths *p = &s->paths;
+    switch (c->figure) { /* no default label, so that the compiler reports a figure that is missing */
+    case HF_REQUIRED_PSI:
+        return psi_m(s);
+    case HF_REQUIRED_SURFACE:
+        return c->feed == HF_FIXED ? p->nodes_m : p->nodes_fit_m;
+    case HF_REQUIRED_FACETS:
+        return c->feed == HF_FIXED ? p->facets_m : p->facets_fit_m;
+    case HF_REQUIRED_TENSION:
+        return extreme_N(c, s, c->is_minimum, item);
+    case HF_REQUIRED_RATIO:
+        return ratio_of(c, s, item);
+    case HF_REQUIRED_SLACK:
+        return count_slack(c, s, item);
+    case HF_REQUIRED_LOOSE:
+        return s->n_loose;
+    case HF_REQUIRED_DEFLECTION:
+        return deflection_m(s, item);
+    case HF_REQUIRED_PULL:
+        return pull_N(s, item);
+    case HF_REQUIRED_MASS:
+        return mass_kg(q, c, s);
+    case HF_REQUIRED_N_FIGURE:
+        break;
+    }
+    return (double)NAN;
+}
+
+void hf_required_measure(const hf_required *q, bool is_many, int state, const hf_required_shape *s, double *value,
+                         double *item)
+{
+    for (int k = 0; k < q->n_column; k++) {
+        item[k] = -1;
+        value[k] = is_needed(&q->column[k], is_many, state) ? figure_of(q, &q->column[k], s, &item[k]) : (double)NAN;
+    }
+}
+
+/* ---- error bounds ---- */
+
+/* Returns a bound on the error of the tension of cable e. Two ends that are off by bound_m each change its length by at
+ * most twice as much. The tension of a cable of law length follows from the shape in no such simple way. */
+static double tension_error_N(const hf_model *m, const hf_required_shape *s, int e, double bound_m)
+{
+    double off_m = 2 * bound_m, unit[3];
+    switch ((hf_law)m->law[e]) {
+    case HF_LAW_TENSION:
+        return fabs(s->tension_N[e] - m->target[e]);
+    case HF_LAW_FORCE_DENSITY:
+        return fabs(s->tension_N[e] - m->target[e] * hf_newton_matrix_direction(m, s->position_m, e, unit)) +
+               fabs(m->target[e]) * off_m;
+    case HF_LAW_ELASTIC:
+        return m->EA_N[e] / m->target[e] * off_m;
+    default:
+        return (double)NAN;
+    }
+}
+
+/* Returns the maximum bound over the cables of a set, NaN if one has none. */
+static double set_error_N(const hf_required_column *c, const hf_required_shape *s, double bound_m)
+{
+    double most_N = 0;
+    for (int i = 0; i < c->n_cable; i++) {
+        double error_N = tension_error_N(s->model, s, c->cable[i], bound_m);
+        if (!(error_N <= most_N)) most_N = error_N;
+        if (isnan(most_N)) break;
+    }
+    return most_N;
+}
+
+/* Bounds the error of the force on support `row`. Besides its tension, the direction of a cable may be off. */
+static double pull_error_N(const hf_required_shape *s, int row, double bound_m)
+{
+    const hf_model *m = s->model;
+    double sum_N = 0, unit[3];
+    for (int e = 0; e < m->n_cable; e++)
+        if (m->end_row[2 * e] == row || m->end_row[2 * e + 1] == row)
+            sum_N += tension_error_N(m, s, e, bound_m) +
+                     2 * bound_m * s->tension_N[e] / hf_newton_matrix_direction(m, s->position_m, e, unit);
+    return sum_N;
+}
+
+static double error_of(const hf_required *q, const hf_required_column *c, const hf_required_shape *s, double bound_m,
+                       double value)
+{
+    const hf_model *m = s->model;
+    double error_N, least_N, at, mass_kg_per_m = 0;
+    switch (c->figure) {
+    case HF_REQUIRED_PSI: /* an RMS is a norm, which changes by at most the norm of the change; a best fit lowers it */
+    case HF_REQUIRED_SURFACE:
+    case HF_REQUIRED_FACETS:
+    case HF_REQUIRED_DEFLECTION:
+        return bound_m;
+    case HF_REQUIRED_TENSION:
+        return set_error_N(c, s, bound_m);
+    case HF_REQUIRED_RATIO:
+        error_N = set_error_N(c, s, bound_m);
+        least_N = extreme_N(c, s, true, &at);
+        return error_N < least_N ? (value + 1) * error_N / (least_N - error_N) : (double)NAN;
+    case HF_REQUIRED_SLACK: /* a count is exact unless a tension is within its error of the limit */
+        error_N = set_error_N(c, s, bound_m);
+        for (int i = 0; i < c->n_cable; i++)
+            if (!(fabs(s->tension_N[c->cable[i]] - HF_SLACK_RATIO * m->reference_N) > error_N)) return (double)NAN;
+        return 0;
+    case HF_REQUIRED_LOOSE:
+        return 0;
+    case HF_REQUIRED_PULL:
+        least_N = 0;
+        for (int row = m->n_free; row < m->n_node; row++)
+            least_N = fmax(least_N, pull_error_N(s, row, bound_m));
+        return isnan(bound_m) ? (double)NAN : least_N;
+    case HF_REQUIRED_MASS:
+        for (int i = 0; i < c->n_cable; i++)
+            mass_kg_per_m += q->mass_kg_per_m[c->cable[i]];
+        return 2 * bound_m * mass_kg_per_m;
+    case HF_REQUIRED_N_FIGURE:
+        break;
+    }
+    return (double)NAN;
+}
+
+void hf_required_bound_errors(const hf_required *q, int state, const hf_required_shape *s, double bound_m,
+                              const double *value, double *error)
+{
+    for (int k = 0; k < q->n_column; k++)
+        error[k] =
+            is_needed(&q->column[k], false, state) ? error_of(q, &q->column[k], s, bound_m, value[k]) : (double)NAN;
+}
+
+/* ---- margins ---- */
+
+double hf_required_margin(const hf_required *q, int i, const double *value, size_t stride, int *state, int *column)
+{
+    const hf_requirement_settings *r = &q->row[i];
+    double least = INFINITY;
+    for (int k = 0; k < q->n_state; k++)
+        for (int is_high = 0; is_high < 2; is_high++) {
+            int at = is_high ? q->high[i] : q->low[i];
+            if (at < 0 || !(q->states[i] >> k & 1u)) continue;
+            double of = value[(size_t)k * stride + (size_t)at], margin = is_high ? r->at_most - of : of - r->at_least;
+            if (isnan(margin)) margin = -INFINITY;
+            if (margin >= least && !(isinf(least) && least > 0)) continue;
+            least = margin;
+            *state = k;
+            *column = at;
+        }
+    return least;
+}
+
+/* ---- verdicts ---- */
+
+/* Returns the id of the cable or support that `item` of a column stands for, "" for none. */
+static const char *id_of(const hf_required *q, int column, double item)
+{
+    if (item < 0) return "";
+    return has_set(q->column[column].figure) ? q->scene->cable_id[(int)item] : q->scene->node_id[(int)item];
+}
+
+void hf_required_note(const hf_required *q, int i, bool is_worst, const double *value, const double *item,
+                      size_t stride, hf_requirement_verdict *to)
+{
+    const hf_requirement_settings *r = &q->row[i];
+    int state = 0, column = 0;
+    double margin = hf_required_margin(q, i, value, stride, &state, &column);
+    size_t at = (size_t)state * stride + (size_t)column;
+    if (is_worst) {
+        to->worst_margin = margin;
+        to->worst_value = value[at];
+        snprintf(to->worst_load_case, sizeof to->worst_load_case, "%s", hf_required_state_name(q, state));
+        snprintf(to->worst_item, sizeof to->worst_item, "%s", id_of(q, column, item[at]));
+        return;
+    }
+    bool is_high = q->high[i] == column && (q->low[i] != column || !(value[at] - r->at_least < r->at_most - value[at]));
+    to->value = value[at];
+    to->bound = is_high ? r->at_most : r->at_least;
+    to->margin = margin;
+    to->relative_margin = to->bound != 0 ? margin / fabs(to->bound) : (double)NAN;
+}
+
+/* Judges by all load cases, because the error bound of one with a larger margin may be larger. */
+void hf_required_judge_nominal(const hf_required *q, int i, const double *value, const double *item,
+                               const double *error, hf_requirement_verdict *to)
+{
+    const hf_requirement_settings *r = &q->row[i];
+    size_t n = (size_t)q->n_column;
+    int state = 0, column = 0;
+    bool fails = false, is_close = false;
+    hf_required_note(q, i, false, value, item, n, to);
+    hf_required_note(q, i, true, value, item, n, to);
+    hf_required_margin(q, i, value, n, &state, &column);
+    to->error_bound = error[(size_t)state * n + (size_t)column];
+    for (int k = 0; k < q->n_state; k++)
+        for (int is_high = 0; is_high < 2; is_high++) {
+            int c = is_high ? q->high[i] : q->low[i];
+            if (c < 0 || !(q->states[i] >> k & 1u)) continue;
+            size_t at = (size_t)k * n + (size_t)c;
+            double margin = is_high ? r->at_most - value[at] : value[at] - r->at_least;
+            double off = isnan(error[at]) ? 0 : error[at];
+            fails |= !(margin >= -off);
+            is_close |= off > 0 && margin < off;
+        }
+    to->verdict = fails ? HF_VERDICT_FAIL : is_close ? HF_VERDICT_UNDECIDED : HF_VERDICT_PASS;
+}

@@ -1,0 +1,137 @@
+/* Prints the verdicts on the rows of `requirements`, worst first. */
+#include "out/print_summary.h"
+#include "base/text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TIGHTEST_SHOWN 5 /* rows shown besides those that are not passed */
+#define CELL 128
+
+/* Returns the order of the verdicts in the table: failed rows, undecided ones, passed ones, those without a verdict. */
+static int rank_of(hf_verdict verdict)
+{
+    static const int rank[HF_VERDICT_N] = {
+        [HF_VERDICT_FAIL] = 0, [HF_VERDICT_UNDECIDED] = 1, [HF_VERDICT_PASS] = 2, [HF_VERDICT_NONE] = 3};
+    return rank[verdict];
+}
+
+/* Returns the relative margin, by which rows of different figures are compared. A row without one comes last. */
+static double tightness(const hf_requirement_verdict *v)
+{
+    return isnan(v->relative_margin) ? (double)INFINITY : v->relative_margin;
+}
+
+static int compare_rows(const void *a, const void *b)
+{
+    const hf_requirement_verdict *p = *(const hf_requirement_verdict *const *)a,
+                                 *q = *(const hf_requirement_verdict *const *)b;
+    int by_verdict = rank_of(p->verdict) - rank_of(q->verdict);
+    if (by_verdict) return by_verdict;
+    if (tightness(p) != tightness(q)) return tightness(p) < tightness(q) ? -1 : 1;
+    return p < q ? -1 : 1; /* in the order of the case */
+}
+
+/* Formats a value of a figure with its unit: "0.6142 mm", "4.974 N", "2". */
+static const char *value_text(hf_required_figure figure, double value, char text[CELL])
+{
+    const char *unit;
+    double times = hf_print_scale(hf_required_figure_unit[figure], &unit);
+    if (isfinite(value))
+        snprintf(text, CELL, "%.4g%s%s", times * value, *unit ? " " : "", unit);
+    else
+        snprintf(text, CELL, "%s", isnan(value) ? "-" : "none");
+    return text;
+}
+
+static void print_bound_of(const hf_requirement_verdict *v, char text[CELL])
+{
+    char low[CELL], high[CELL];
+    const hf_requirement_settings *r = &v->row;
+    value_text(r->figure, r->at_least, low);
+    value_text(r->figure, r->at_most, high);
+    if (isnan(r->at_most))
+        snprintf(text, CELL, "at least %.60s", low);
+    else if (isnan(r->at_least))
+        snprintf(text, CELL, "at most %.60s", high);
+    else
+        snprintf(text, CELL, "%.*s to %.60s", (int)strcspn(low, " "), low, high);
+}
+
+static void print_margin_of(const hf_requirement_verdict *v, char text[CELL])
+{
+    char margin[CELL];
+    value_text(v->row.figure, v->margin, margin);
+    if (isfinite(v->relative_margin))
+        snprintf(text, CELL, "%s%.60s (%+.3g %%)", v->margin >= 0 ? "+" : "", margin, 100 * v->relative_margin);
+    else
+        snprintf(text, CELL, "%s%.60s", v->margin >= 0 ? "+" : "", margin);
+}
+
+/* Prints which samples meet the row, or the numerical error of a nominal value that decides nothing. */
+static void print_evidence(const hf_requirement_verdict *v, FILE *f)
+{
+    char error[CELL];
+    if (isfinite(v->yield))
+        fprintf(f, "; %.4g %% of samples meet it (%.4g to %.4g %%)", 100 * v->yield, 100 * v->yield_low,
+                100 * v->yield_high);
+    else if (v->verdict == HF_VERDICT_UNDECIDED)
+        fprintf(f, "; the value is certified to %s only", value_text(v->row.figure, v->error_bound, error));
+}
+
+static void print_worst(const hf_requirement_verdict *v, FILE *f)
+{
+    char value[CELL];
+    bool is_sample = v->worst_sample >= 0, has_case = strcmp(v->row.load_case, v->worst_load_case) != 0;
+    if (!is_sample && !*v->worst_item && !has_case) return;
+    fprintf(f, "; worst: ");
+    if (is_sample) fprintf(f, "%s in sample %ld", value_text(v->row.figure, v->worst_value, value), v->worst_sample);
+    if (*v->worst_item) fprintf(f, "%s%s", is_sample ? ", " : "", v->worst_item);
+    if (has_case) fprintf(f, "%s%s", is_sample || *v->worst_item ? ", " : "", v->worst_load_case);
+}
+
+static void print_row(const hf_requirement_verdict *v, int width, FILE *f)
+{
+    char name[256], shown[512], bound[CELL], margin[CELL], value[CELL];
+    hf_text_escape(hf_requirement_name(&v->row, name, sizeof name), shown, sizeof shown);
+    print_bound_of(v, bound);
+    print_margin_of(v, margin);
+    fprintf(f, "  %-12s  %-*s  %11s  %-18s  margin %s",
+            v->verdict == HF_VERDICT_NONE ? "-" : hf_verdict_word[v->verdict], width, shown,
+            value_text(v->row.figure, v->value, value), bound, margin);
+    print_evidence(v, f);
+    print_worst(v, f);
+    fputc('\n', f);
+}
+
+void hf_print_requirements(const hf_summary *s, hf_print_style style, FILE *f)
+{
+    const hf_requirement_verdict *row[HF_REQUIREMENT_ROWS_MAX];
+    int n = s->n_requirement, count[HF_VERDICT_N] = {0}, width = 0, n_shown = 0;
+    char name[256];
+    if (n == 0) return;
+    for (int i = 0; i < n; i++) {
+        row[i] = &s->requirement[i];
+        count[row[i]->verdict]++;
+    }
+    qsort(row, (size_t)n, sizeof *row, compare_rows);
+    n_shown = style.verbose ? n : count[HF_VERDICT_FAIL] + count[HF_VERDICT_UNDECIDED] + TIGHTEST_SHOWN;
+    if (n_shown > n) n_shown = n;
+    for (int i = 0; i < n_shown; i++) {
+        int length = (int)strlen(hf_requirement_name(&row[i]->row, name, sizeof name));
+        if (length > width) width = length;
+    }
+    hf_verdict all = hf_requirements_verdict(n, s->requirement);
+    const char *colour = all == HF_VERDICT_FAIL ? HF_PRINT_RED : all == HF_VERDICT_UNDECIDED ? HF_PRINT_YELLOW : "";
+    if (style.has_colour) fprintf(f, "%s%s", HF_PRINT_BOLD, colour);
+    fprintf(f, "verdict: %s; %d of %d requirements pass", hf_verdict_word[all], count[HF_VERDICT_PASS],
+            n - count[HF_VERDICT_NONE]);
+    if (count[HF_VERDICT_FAIL])
+        fprintf(f, ", %d fail%s", count[HF_VERDICT_FAIL], count[HF_VERDICT_FAIL] == 1 ? "s" : "");
+    if (count[HF_VERDICT_UNDECIDED]) fprintf(f, ", %d undecided", count[HF_VERDICT_UNDECIDED]);
+    fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
+    for (int i = 0; i < n_shown; i++)
+        print_row(row[i], width, f);
+    if (n_shown < n) fprintf(f, "                %d more that pass: --verbose shows them\n", n - n_shown);
+}

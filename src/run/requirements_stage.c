@@ -1,0 +1,185 @@
+/* Gives the verdicts on the rows of `requirements` (METHOD section 14):
+ *
+ *     shape of the result, shapes of the load cases -> values with error bounds -> verdicts of the nominal net
+ *     rows of the samples (tolerance_stage.c)                                   -> verdicts of the shares
+ *         |
+ *         v
+ *     summary; warnings about bounds in another unit than the figure */
+#include "run/requirements_stage.h"
+
+#include "base/arena.h"
+#include "case/config_fault.h"
+#include "net/cable_pick.h"
+#include "run/stages.h"
+#include "run/tolerance_stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- checks ---- */
+
+static hf_status check_masses(const hf_problem *p, int i, const int *cable, int n, hf_messages *messages)
+{
+    char place[HF_LOCATION_SIZE];
+    hf_material material;
+    int n_unknown = 0, first = 0;
+    hf_status status = hf_config_material(&p->settings, &p->scene, &material, messages);
+    for (int k = 0; k < n && status == HF_OK; k++)
+        if (isnan(material.mass_kg_per_m[cable[k]]) && n_unknown++ == 0) first = cable[k];
+    hf_material_free(&material);
+    HF_TRY(status);
+    if (n_unknown == 0) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: %d cable%s no mass per length, such as '%s'. Add mass_kg_per_m to a row of the list `cables`",
+                    hf_config_place(&p->settings, place, "requirements.%d.figure", i), n_unknown,
+                    n_unknown == 1 ? " has" : "s have", p->scene.cable_id[first]);
+}
+
+static hf_status check_row(const hf_problem *p, int i, int *cable, hf_messages *messages)
+{
+    const hf_requirement_settings *r = &p->settings.requirement[i];
+    char place[HF_LOCATION_SIZE];
+    int n = hf_cable_pick_some(&p->scene, r->set, hf_config_place(&p->settings, place, "requirements.%d.set", i), cable,
+                               messages);
+    if (n == 0) return HF_BAD_CASE;
+    if (r->figure == HF_REQUIRED_FACETS && p->facets.n_facet == 0)
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: this net has no facets. To bound the errors of the nodes, use the figure surface",
+                        hf_config_place(&p->settings, place, "requirements.%d.figure", i));
+    return r->figure == HF_REQUIRED_MASS ? check_masses(p, i, cable, n, messages) : HF_OK;
+}
+
+hf_status hf_requirements_stage_check(const hf_problem *p, hf_messages *messages)
+{
+    int *cable;
+    void *block;
+    hf_status worst = HF_OK;
+    if (p->settings.n_requirement == 0) return HF_OK;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(cable, p->scene.n_cable)));
+    for (int i = 0; i < p->settings.n_requirement; i++)
+        if (check_row(p, i, cable, messages) != HF_OK) worst = HF_BAD_CASE;
+    hf_arena_free_block(block);
+    return worst;
+}
+
+/* ---- measuring the design ---- */
+
+hf_status hf_requirements_stage_open(const hf_problem *p, hf_requirements_stage *q, hf_messages *messages)
+{
+    const hf_case *c = &p->settings;
+    bool needs_mass = false;
+    *q = (hf_requirements_stage){0};
+    for (int i = 0; i < c->n_requirement; i++)
+        needs_mass |= c->requirement[i].figure == HF_REQUIRED_MASS;
+    if (needs_mass) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
+    hf_required *of = &q->required;
+    hf_status status =
+        hf_required_create(c->n_requirement, c->requirement, &p->scene, &p->load_cases, q->material.mass_kg_per_m, of);
+    size_t n = (size_t)of->n_state * (size_t)of->n_column;
+    if (status == HF_OK)
+        status = HF_ARENA_ARRAYS(&q->block, HF_ARRAY(q->value, n), HF_ARRAY(q->item, n), HF_ARRAY(q->error, n));
+    if (status != HF_OK) return hf_error(messages, status, "out of memory for the requirements");
+    for (size_t k = 0; k < n; k++)
+        q->value[k] = q->item[k] = q->error[k] = (double)NAN;
+    return HF_OK;
+}
+
+void hf_requirements_stage_free(hf_requirements_stage *q)
+{
+    hf_required_free(&q->required);
+    hf_material_free(&q->material);
+    hf_arena_free_block(q->block);
+    *q = (hf_requirements_stage){0};
+}
+
+void hf_requirements_stage_take(hf_requirements_stage *q, int state, const hf_model *m, const hf_workspace *w,
+                                const hf_form_result *r, const hf_surface_measures *s)
+{
+    const hf_required *of = &q->required;
+    size_t at = (size_t)state * (size_t)of->n_column;
+    hf_required_shape shape = {.model = m,
+                               .position_m = w->position_m,
+                               .tension_N = w->tension_N,
+                               .displacement_m = w->displacement_m,
+                               .loose = r->n_loose ? w->loose : NULL,
+                               .n_loose = r->n_loose,
+                               .paths = {NAN, NAN, NAN, NAN}};
+    if (!(of->nominal >> state & 1u)) return;
+    if (s->is_measured) {
+        double fit_m = s->fit.converged ? s->fit.half_path_rms_m : (double)NAN;
+        shape.paths =
+            (hf_surface_paths){s->half_path_rms_m, fit_m, s->facet_half_path_rms_m, s->facet_fit_half_path_rms_m};
+    }
+    hf_required_measure(of, false, state, &shape, q->value + at, q->item + at);
+    hf_required_bound_errors(of, state, &shape, r->position_bound_m, q->value + at, q->error + at);
+}
+
+/* ---- verdicts ---- */
+
+/* Allocates the verdicts of the summary, without any verdict. */
+static hf_status make_verdicts(const hf_requirements_stage *q, hf_summary *s, hf_messages *messages)
+{
+    const hf_required *of = &q->required;
+    const double none = (double)NAN;
+    if (!s->requirement) s->requirement = calloc((size_t)of->n, sizeof *s->requirement);
+    if (!s->requirement) return hf_error(messages, HF_NO_MEMORY, "out of memory for the requirements");
+    for (int i = 0; i < of->n; i++)
+        s->requirement[i] = (hf_requirement_verdict){.row = of->row[i],
+                                                     .verdict = HF_VERDICT_NONE,
+                                                     .value = none,
+                                                     .bound = none,
+                                                     .margin = none,
+                                                     .relative_margin = none,
+                                                     .error_bound = none,
+                                                     .yield = none,
+                                                     .yield_low = none,
+                                                     .yield_high = none,
+                                                     .worst_sample = -1,
+                                                     .worst_margin = none,
+                                                     .worst_value = none};
+    return HF_OK;
+}
+
+hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *q, const hf_montecarlo *t,
+                                              const hf_statistics_rows *rows, hf_summary *s, hf_messages *messages)
+{
+    if (q->required.n_share == 0) return HF_OK;
+    HF_TRY(make_verdicts(q, s, messages));
+    return hf_statistics_judge(t, rows, s->requirement);
+}
+
+/* Warns about a length or force that is a thousand times off its bound. Such a bound is probably in mm or kN. */
+#define OTHER_UNIT 1000.0
+static void doubt_bound(const hf_requirement_verdict *v, int i, const char *key, double bound, hf_messages *messages)
+{
+    const char *unit = hf_required_figure_unit[v->row.figure], *small = *unit == 'm' ? "mm" : "mN";
+    double factor = fabs(bound) / fabs(v->value);
+    bool has_unit = !strcmp(unit, "m") || !strcmp(unit, "N");
+    if (!has_unit || !(bound > 0) || !(fabs(v->value) > 1e-9)) return;
+    if (factor < OTHER_UNIT && factor > 1 / OTHER_UNIT) return;
+    hf_warning(messages,
+               "requirements.%d.%s: the bound %.6g %s (%.6g %s) and the value %.6g %s (%.6g %s) differ by a factor of "
+               "%.3g. Check the unit of the bound",
+               i, key, bound, unit, bound * 1e3, small, v->value, unit, v->value * 1e3, small,
+               factor > 1 ? factor : 1 / factor);
+}
+
+hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
+{
+    hf_requirements_stage *q = &r->requirements;
+    const hf_required *of = &q->required;
+    if (hf_tolerance_stage_is_task(r->request) || !r->shape) return HF_OK;
+    hf_stage stage = hf_store_result_stage(s);
+    const hf_stage_summary *result = &s->stage[stage == HF_N_STAGE ? HF_STAGE_FORM : stage];
+    hf_requirements_stage_take(q, 0, &r->problem.model, r->shape, &result->result, &result->surface);
+    if (of->n_share == 0) HF_TRY(make_verdicts(q, s, messages));
+    for (int i = 0; i < of->n; i++) {
+        hf_requirement_verdict *v = &s->requirement[i];
+        if (isnan(v->row.share)) hf_required_judge_nominal(of, i, q->value, q->item, q->error, v);
+        doubt_bound(v, i, "at_least", v->row.at_least, messages);
+        doubt_bound(v, i, "at_most", v->row.at_most, messages);
+    }
+    s->n_requirement = of->n;
+    return HF_OK;
+}

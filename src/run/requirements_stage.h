@@ -1,0 +1,36 @@
+/* requirements_stage - measures the figures that `requirements` bound during a run, and gives the verdicts at its
+ * end. */
+#pragma once
+
+#include "built/required.h"
+#include "built/statistics.h"
+#include <hifdm/problem.h>
+#include <hifdm/summary.h>
+
+/* All members are zero for a case without `requirements`. */
+typedef struct {
+    hf_required required;
+    hf_material material;         /* mass of the cables, if a row needs it */
+    double *value, *item, *error; /* [n_state][n_column] of the design; NaN where nothing was measured */
+    void *block;
+} hf_requirements_stage;
+
+/* Refuses rows whose figure or set this net does not have. Returns HF_OK or HF_BAD_CASE, with a message for each
+ * fault. */
+hf_status hf_requirements_stage_check(const hf_problem *problem, hf_messages *messages);
+
+/* Prepares the rows, which have been checked. Returns HF_OK, HF_NO_MEMORY or HF_BAD_CASE, with a message. The problem
+ * is borrowed. */
+hf_status hf_requirements_stage_open(const hf_problem *problem, hf_requirements_stage *stage, hf_messages *messages);
+void hf_requirements_stage_free(hf_requirements_stage *stage);
+
+/* Measures the design in a load case: its shape in the workspace of the model, the errors of its surface, and the bound
+ * on its position errors, m (NaN: not known). */
+void hf_requirements_stage_take(hf_requirements_stage *stage, int state, const hf_model *model,
+                                const hf_workspace *workspace, const hf_form_result *result,
+                                const hf_surface_measures *surface);
+
+/* Gives the verdicts on the rows with a share. Returns the status of hf_statistics_judge. */
+hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *stage, const hf_montecarlo *montecarlo,
+                                              const hf_statistics_rows *rows, hf_summary *summary,
+                                              hf_messages *messages);
