@@ -77,8 +77,9 @@ void hf_built_load_case(const hf_built *built, const hf_material *material, cons
                         hf_built_net *net);
 
 /* Makes the as-built net that has the load case `net` as its nominal state. The workspace contains the shape that
- * hf_built_solve found for this load case. Samples in this load case then differ from *to by their errors alone. The
- * net `base` must outlive *to. Returns HF_OK or HF_NO_MEMORY. Call hf_built_free even if the function fails. */
+ * hf_built_solve found for this load case. Samples in this load case then differ from *to by their errors alone. If
+ * *to is all zero, the function allocates its memory. Otherwise *to must come from an earlier call with the same base.
+ * The net `base` must outlive *to. Returns HF_OK or HF_NO_MEMORY. Call hf_built_free even if the function fails. */
 hf_status hf_built_in_load_case(const hf_built *base, const hf_built_net *net, const hf_workspace *workspace,
                                 hf_built *to, hf_messages *messages);
 

@@ -64,6 +64,7 @@ typedef struct {
     /* limits of the designs; a shape that violates a limit gets HF_OUT_OF_LIMITS; NULL: no limits */
     const hf_limits *limits;
     const hf_objectives *objectives; /* objectives that form the merit of a shape; NULL: the merit is psi_m */
+    const double *initial;           /* [n_variable] initial design; used by design variables with link: scale */
     int n_thread; /* number of threads that compute the derivatives of one design; 0: the calling thread alone */
     /* Levenberg-Marquardt: a design variable of a tension T sets the force density T/L* instead of the tension. */
     bool by_density;

@@ -35,6 +35,7 @@ typedef struct {
     int setting;         /* row of optimize.variables */
     int support_row;     /* row of the displaced support; -1: none */
     double direction[3]; /* unit vector of the displacement */
+    bool scales;         /* the design variables of the row change by the same factor (link: scale) */
 } hf_variable;
 
 /* Contains a scene that is prepared for solving. In this struct, "row" means the index of a node in the model. */

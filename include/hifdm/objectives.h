@@ -78,6 +78,31 @@ typedef struct hf_objectives_nets {
 } hf_objectives_nets;
 #define HF_OBJECTIVES_AT_ONCE 8 /* maximum number of rates in one call of `follow` */
 
+/* Writes the rates of the shape of the design by variable i_rate to move_m [3][n_node] and tension_rate [n_cable].
+ * Returns the rates of the attachment displacements [3 n_attachment]. */
+typedef const double *hf_constraints_spread(const void *context, int i_rate, double *move_m, double *tension_rate);
+
+/* Describes the constraints that rows of `requirements` set on designs (METHOD section 14). The module
+ * built/constraints.h makes them. This module calls the functions through pointers because built/constraints.h depends
+ * on this module. A constraint is the signed distance of a figure from its bound. A design is feasible if no distance
+ * is above 0. */
+typedef struct hf_constraints {
+    int n;              /* number of constraints */
+    const double *unit; /* [n] distances in this unit make up the violation of a design */
+    /* Allocates the scratch memory *room of one thread. Returns HF_OK or HF_NO_MEMORY. Call `close` even if `open`
+     * fails. */
+    hf_status (*open)(const struct hf_constraints *constraints, void **room);
+    /* Frees the scratch memory of a thread. */
+    void (*close)(void *room);
+    /* Measures the design whose shape is in the workspace. The array value [n] receives the distances. If is_smooth is
+     * true, a constraint over samples is the mean of the worst samples, otherwise their quantile. Returns HF_OK or
+     * HF_NO_MEMORY. */
+    hf_status (*measure)(void *room, const hf_workspace *design, bool is_smooth, double *value);
+    /* Computes rate [n][n_rate], the derivatives of the smooth distances of the design measured last. Returns HF_OK or
+     * HF_NO_MEMORY. */
+    hf_status (*linearise)(void *room, int n_rate, hf_constraints_spread *spread, const void *context, double *rate);
+} hf_constraints;
+
 /* Contains the objectives of a case, prepared for the model. The objectives do not change after creation. Threads can
  * therefore share the objectives. */
 typedef struct {
@@ -89,8 +114,9 @@ typedef struct {
     struct hf_gain_beam *beam;                  /* [n_objective] data of the beam for each objective gain */
     int n_objective, n_row;                     /* number of objectives, and number of all residuals */
     hf_objective objective[HF_DESIGN_ROWS_MAX]; /* [n_objective] the objectives */
-    const hf_objectives_nets *nets; /* as-built nets, borrowed; NULL if no objective is measured on as-built nets */
-    void *block;                    /* owned memory behind the arrays */
+    const hf_objectives_nets *nets;    /* as-built nets, borrowed; NULL if no objective is measured on as-built nets */
+    const hf_constraints *constraints; /* constraints by requirements, borrowed; NULL: none */
+    void *block;                       /* owned memory behind the arrays */
 } hf_objectives;
 
 /* Contains the memory of one thread for the objectives. In addition to scratch memory, the struct contains the data
@@ -108,7 +134,10 @@ typedef struct hf_objectives_point {
     double *net_value; /* [n_objective][n_load_case + n_sample] value in each net; infinite if the net has no shape */
     double *net_norm;  /* [n_objective][n_load_case + n_sample] norm of the residuals in each net */
     double *net_part;  /* [n_objective][n_load_case + n_sample] norm divided by the smooth maximum, or scratch */
-    void *block;       /* owned memory behind the arrays */
+    void *constraints; /* scratch of the constraints; NULL without constraints */
+    void (*free_constraints)(void *room); /* frees `constraints` */
+    double *constraint;                   /* [constraints->n] distances of the design that was judged last */
+    void *block;                          /* owned memory behind the arrays */
 } hf_objectives_point;
 
 /* Creates the objectives of a case from the rows of optimize.front or optimize.objective. If the case has no rows for

@@ -59,9 +59,9 @@ typedef enum {
     HF_VARY_SUPPORT_XYZ,       /* displacement of a support along x, y and z: three design variables, m */
     HF_VARY_PRETENSION /* pretension of a boundary cable under optimize.rule, N; not available in optimize.variables */
 } hf_vary;
-/* The key optimize.link selects which design variables of a row change by the same step: none, all, or the variables at
- * mirrored positions. */
-typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY } hf_link;
+/* The key optimize.link selects which design variables of a row change together: none, all by the same step, the
+ * variables at mirrored positions by the same step, or all by the same factor. */
+typedef enum { HF_LINK_EACH, HF_LINK_SET, HF_LINK_SYMMETRY, HF_LINK_SCALE } hf_link;
 
 /* Selects the quantity that a row of optimize.objective or optimize.front measures. Every quantity of an objective is
  * at least zero and is minimised. */
@@ -383,6 +383,8 @@ typedef struct {
 /* A radio figure belongs to one of two feeds. The refocused feed follows the best fit of the target surface to the
  * shape in position, direction and focal length. The fixed feed remains where the target surface has it. */
 typedef enum { HF_REFOCUSED, HF_FIXED, HF_N_FOCUS } hf_focus;
+/* A row of `requirements` constrains the search, or is judged at the end of the run alone. */
+typedef enum { HF_SEARCH_ON, HF_SEARCH_OFF } hf_constrains;
 
 /* Each row X(name, word, unit, description) defines a figure that a row of `requirements` can bound. A figure of a set
  * of cables or of supports is judged by its worst cable or support. */
@@ -412,7 +414,8 @@ typedef struct {
     char load_case[HF_SET_NAME_SIZE]; /* "nominal", the name of a load case, or "all" for nominal and all load cases */
     double at_least, at_most;         /* bounds in the unit of the figure; NaN: not given */
     double within[2];                 /* both bounds in one key; infinite if not given. The bounds are then copied */
-    double share; /* required share of the as-built samples; 0: the share is only reported; NaN: nominal net */
+    double share;         /* required share of the as-built samples; 0: the share is only reported; NaN: nominal net */
+    hf_constrains search; /* whether the row constrains the search */
 } hf_requirement_settings;
 
 #define HF_REQUIREMENT_ROWS_MAX 32 /* maximum number of rows of `requirements` */

@@ -133,7 +133,7 @@ static void print_variables(const hf_check *c, FILE *f)
         if (!isnan(s->range_ratio)) fprintf(f, ", range %g %%", 100 * s->range_ratio);
         if (isnan(s->range_ratio) && !isnan(s->range)) fprintf(f, ", range %g", s->range);
         print_bounds(s->lower, s->upper, f);
-        fputs(s->link == HF_LINK_SET ? ", as one\n" : "\n", f);
+        fputs(s->link == HF_LINK_SET ? ", as one\n" : s->link == HF_LINK_SCALE ? ", by one factor\n" : "\n", f);
     }
 }
 

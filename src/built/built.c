@@ -118,31 +118,39 @@ hf_status hf_built_renew(const hf_model *m, const hf_workspace *w, hf_built *b)
     return HF_OK;
 }
 
+/* Makes the arrays and the model of a net in a load case. */
+static hf_status make_loaded(const hf_built *base, hf_built *to, hf_messages *messages)
+{
+    size_t n = (size_t)base->scene.n_cable, n_coordinate = 3 * (size_t)base->scene.n_node;
+    *to = (hf_built){.scene = base->scene, .form = base->form, .stop = base->stop};
+    if (HF_ARENA_ARRAYS(&to->block, HF_ARRAY(to->scene.target, n), HF_ARRAY(to->scene.position_m, n_coordinate),
+                        HF_ARRAY(to->position_m, n_coordinate), HF_ARRAY(to->tension_N, n),
+                        HF_ARRAY(to->scene.load_N, n_coordinate)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the as-built net in a load case");
+    memcpy(to->scene.position_m, base->scene.position_m, n_coordinate * sizeof(double));
+    memcpy(to->scene.target, base->scene.target, n * sizeof(double));
+    HF_TRY(hf_model_build(&to->scene, &to->form, &to->model, messages));
+    HF_TRY(attach_truss(&base->model, to, messages));
+    to->model.moves_supports = true;
+    return HF_OK;
+}
+
 hf_status hf_built_in_load_case(const hf_built *base, const hf_built_net *net, const hf_workspace *w, hf_built *to,
                                 hf_messages *messages)
 {
     const hf_scene *s = &base->scene;
     const hf_model *m = &base->model;
-    size_t n = (size_t)s->n_cable, n_coordinate = 3 * (size_t)s->n_node;
-    double *load_N;
-    *to = (hf_built){.scene = *s, .form = base->form, .stop = base->stop};
-    if (HF_ARENA_ARRAYS(&to->block, HF_ARRAY(to->scene.target, n), HF_ARRAY(to->scene.position_m, n_coordinate),
-                        HF_ARRAY(to->position_m, n_coordinate), HF_ARRAY(to->tension_N, n),
-                        HF_ARRAY(load_N, n_coordinate)) != HF_OK)
-        return hf_error(messages, HF_NO_MEMORY, "out of memory for the as-built net in a load case");
-    memcpy(to->scene.target, net->cut_m, n * sizeof(double));
-    memcpy(to->position_m, w->position_m, n_coordinate * sizeof(double));
-    memcpy(to->tension_N, w->tension_N, n * sizeof(double));
-    memcpy(load_N, net->load_N, n_coordinate * sizeof(double));
-    memcpy(to->scene.position_m, s->position_m, n_coordinate * sizeof(double));
-    HF_TRY(hf_model_build(&to->scene, &to->form, &to->model, messages));
-    HF_TRY(attach_truss(m, to, messages));
+    size_t n = (size_t)s->n_cable * sizeof(double), n_coordinate = 3 * (size_t)s->n_node * sizeof(double);
+    if (!to->block) HF_TRY(make_loaded(base, to, messages));
+    memcpy(to->scene.target, net->cut_m, n);
+    memcpy(to->position_m, w->position_m, n_coordinate);
+    memcpy(to->tension_N, w->tension_N, n);
+    memcpy(to->model.load_N, net->load_N, n_coordinate);
+    memcpy(to->scene.position_m, s->position_m, n_coordinate);
     for (int i = 0; i < s->n_node; i++)
         for (int c = 0; c < 3 && s->role[i] == HF_ROLE_SUPPORT; c++)
             to->scene.position_m[3 * i + c] += net->support_displacement_m[c * m->n_node + m->row_of_node[i]];
-    to->model.moves_supports = true;
     hold_design(w, to);
-    to->model.load_N = load_N;
     to->model.reference_N = m->reference_N; /* a cable is slack below the same tension in all load cases */
     return HF_OK;
 }

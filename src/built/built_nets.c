@@ -19,6 +19,11 @@ typedef struct {
     bool is_made; /* false before the first design that could be cut */
     hf_built built;
     hf_built_batch *batch;
+    /* [n_sample_state] by state, from 1: the design in the load case of the state, and its batch; NULL: no shape */
+    hf_built loaded[1 + HF_LOAD_CASES_MAX];
+    hf_built_batch *loaded_batch[1 + HF_LOAD_CASES_MAX];
+    bool has_shape[1 + HF_LOAD_CASES_MAX];
+    int state;                   /* of the samples that are being solved */
     hf_built_linear linear;      /* the net linearised last; not factored before the first one */
     hf_built_errors errors;      /* made only with samples */
     hf_workspace design, of_net; /* views of a shape; other objects own the arrays */
@@ -61,6 +66,10 @@ static void close_room(void *room)
 {
     nets_room *r = room;
     if (!r) return;
+    for (int s = 0; s <= HF_LOAD_CASES_MAX; s++) {
+        hf_built_batch_free(r->loaded_batch[s]);
+        hf_built_free(&r->loaded[s]);
+    }
     hf_built_batch_free(r->batch);
     hf_built_linear_free(&r->linear);
     hf_arena_free_block(r->errors.block);
@@ -88,24 +97,36 @@ static hf_status make_room_for(nets_room *r, const hf_workspace *w)
     return HF_OK;
 }
 
-/* Cuts the nets for the design in the workspace, as hf_objectives_nets.cut. */
-static hf_status cut_for(void *room, const hf_workspace *w)
-{
-    nets_room *r = room;
-    r->design = (hf_workspace){.length_m = w->length_m, .tension_N = w->tension_N};
-    if (!r->is_made) return make_room_for(r, w);
-    HF_TRY(hf_built_renew(r->nets->model, w, &r->built));
-    return hf_built_batch_renew(r->batch);
-}
-
 /* ---- one net ---- */
 
-/* Makes sample i, as an hf_built_sample. */
+/* Returns the load case of net i_net, -1 for a sample without load case. *state receives the state of a sample, -1 for
+ * the design in a load case. */
+static int load_case_of(const hf_built_nets *nets, int i_net, int *state)
+{
+    *state = i_net < nets->as.n_load_case ? -1 : (i_net - nets->as.n_load_case) / nets->as.n_sample;
+    return *state < 0 ? i_net : *state == 0 ? -1 : nets->sample_load_case[*state];
+}
+
+/* Returns the first net of a state of the samples. */
+static int first_of_state(const hf_built_nets *nets, int state)
+{
+    return nets->as.n_load_case + state * nets->as.n_sample;
+}
+
+/* Makes sample i in the state of the room, as an hf_built_sample. */
 static void make_sample(void *room, long i, double *cut_m, double *EA_N, double *move_m)
 {
     nets_room *r = room;
+    const hf_built_nets *nets = r->nets;
+    const hf_model *m = &r->built.model;
+    const hf_load_case *load_case =
+        r->state > 0 ? &nets->load_cases->load_case[nets->sample_load_case[r->state]] : NULL;
+    if (load_case) memcpy(cut_m, m->target, (size_t)m->n_cable * sizeof *cut_m);
     hf_built_errors_draw(&r->errors, i, r->z);
     hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
+    for (int e = 0; load_case && e < m->n_cable; e++)
+        if (load_case->rise_K[e] != 0)
+            cut_m[e] *= 1 + nets->load_cases->material.expansion_per_K[e] * load_case->rise_K[e];
 }
 
 /* Sets *net to a load case or a sample, in the arrays of the room. */
@@ -113,23 +134,26 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
 {
     const hf_built_nets *nets = r->nets;
     const hf_model *m = &r->built.model;
+    int state, i_load_case = load_case_of(nets, i_net, &state);
     size_t n = (size_t)m->n_cable * sizeof(double);
-    if (i_net < nets->as.n_load_case) {
+    if (i_load_case >= 0) {
         const double *move_m = nets->attachment_move_m;
-        if (move_m) move_m += 3 * (size_t)i_net * (size_t)m->n_attachment;
-        hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i_net], move_m,
+        if (move_m) move_m += 3 * (size_t)i_load_case * (size_t)m->n_attachment;
+        hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i_load_case], move_m,
                            r->cut_m, r->move_m, r->load_N, net);
-        return;
+        if (state < 0) return;
+    } else {
+        *net = (hf_built_net){.cut_m = r->cut_m};
+        memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
     }
     unsigned varies = hf_built_errors_vary(&r->errors);
-    *net = (hf_built_net){.cut_m = r->cut_m,
-                          .EA_N = varies & HF_BUILT_VARIES_EA ? r->EA_N : NULL,
-                          .support_displacement_m = varies & HF_BUILT_VARIES_SUPPORTS ? r->move_m : NULL};
+    bool moves = varies & HF_BUILT_VARIES_SUPPORTS;
+    if (varies & HF_BUILT_VARIES_EA) net->EA_N = r->EA_N;
+    if (moves) net->support_displacement_m = r->move_m;
     memcpy(r->cut_m, m->target, n);
     memcpy(r->EA_N, m->EA_N, n);
-    memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
-    make_sample(r, i_net - nets->as.n_load_case, r->cut_m, net->EA_N ? r->EA_N : NULL,
-                net->support_displacement_m ? r->move_m : NULL);
+    r->state = state;
+    make_sample(r, i_net - first_of_state(nets, state), r->cut_m, net->EA_N ? r->EA_N : NULL, moves ? r->move_m : NULL);
 }
 
 /* ---- shapes ---- */
@@ -155,7 +179,7 @@ static void take_from_lane(void *context, long i, const hf_built_shape *s, const
 {
     nets_room *r = context;
     bool has_shape = result->status == HF_OK;
-    r->take(r->context, r->nets->as.n_load_case + (int)i,
+    r->take(r->context, first_of_state(r->nets, r->state) + (int)i,
             has_shape ? view(r, s->position_m, s->tension_N, s->displacement_m) : NULL);
 }
 
@@ -173,15 +197,61 @@ static const hf_workspace *find_one(nets_room *r, int i_net, const hf_workspace 
 static void solve_nets(void *room, int first, int n, hf_objectives_take *take, void *context)
 {
     nets_room *r = room;
+    const hf_built_nets *nets = r->nets;
     const hf_workspace *whole;
-    int i = first, n_load_case = r->nets->as.n_load_case;
-    for (; i < n_load_case && i < first + n; i++)
+    int i = first, end = first + n;
+    for (; i < nets->as.n_load_case && i < end; i++)
         take(context, i, find_one(r, i, &whole));
     r->take = take;
     r->context = context;
-    if (i < first + n)
-        hf_built_batch_run(r->batch, hf_built_errors_vary(&r->errors), i - n_load_case, first + n - i, make_sample,
-                           take_from_lane, r);
+    while (i < end) {
+        load_case_of(nets, i, &r->state);
+        int first_here = first_of_state(nets, r->state), next = first_of_state(nets, r->state + 1);
+        if (next > end) next = end;
+        hf_built_batch *batch = r->state == 0 ? r->batch : r->loaded_batch[r->state];
+        bool has_shape = r->state == 0 || r->has_shape[r->state];
+        if (has_shape)
+            hf_built_batch_run(batch, hf_built_errors_vary(&r->errors), i - first_here, next - i, make_sample,
+                               take_from_lane, r);
+        for (; i < next; i++)
+            if (!has_shape) take(context, i, NULL);
+    }
+}
+
+/* ---- a design ---- */
+
+/* Finds the design in the load case of a state of the samples, and makes or renews the net near which its samples
+ * are. */
+static hf_status load_state(nets_room *r, int state)
+{
+    hf_built_net net;
+    hf_form_result result;
+    hf_messages messages = {0};
+    make_net(r, r->nets->sample_load_case[state], &net);
+    const hf_workspace *w = hf_built_batch_find(r->batch, &net, &result);
+    r->has_shape[state] = result.status == HF_OK;
+    if (!r->has_shape[state]) return HF_OK;
+    hf_status status = hf_built_in_load_case(&r->built, &net, w, &r->loaded[state], &messages);
+    hf_messages_free(&messages);
+    HF_TRY(status);
+    if (!r->loaded_batch[state]) return hf_built_batch_create(&r->loaded[state], 1, &r->loaded_batch[state]);
+    return hf_built_batch_renew(r->loaded_batch[state]);
+}
+
+/* Cuts the nets for the design in the workspace, as hf_objectives_nets.cut. */
+static hf_status cut_for(void *room, const hf_workspace *w)
+{
+    nets_room *r = room;
+    r->design = (hf_workspace){.length_m = w->length_m, .tension_N = w->tension_N};
+    if (!r->is_made) {
+        HF_TRY(make_room_for(r, w));
+    } else {
+        HF_TRY(hf_built_renew(r->nets->model, w, &r->built));
+        HF_TRY(hf_built_batch_renew(r->batch));
+    }
+    for (int state = 1; state < r->nets->n_sample_state; state++)
+        HF_TRY(load_state(r, state));
+    return HF_OK;
 }
 
 /* ---- derivatives ---- */
@@ -192,26 +262,27 @@ static void find_stretch(nets_room *r, int i_net)
 {
     const hf_built_nets *nets = r->nets;
     const hf_model *m = &r->built.model;
-    r->has_weight = false;
-    if (i_net < nets->as.n_load_case) {
-        const hf_load_case *load_case = &nets->load_cases->load_case[i_net];
-        const hf_material *t = &nets->load_cases->material;
-        for (int e = 0; e < m->n_cable; e++)
-            r->stretch[e] = load_case->rise_K[e] != 0 ? 1 + t->expansion_per_K[e] * load_case->rise_K[e] : 1;
-        for (int c = 0; c < 3; c++)
-            r->has_weight |= load_case->gravity_m_per_s2[c] != 0;
-        for (int e = 0; e < 3 * m->n_cable && r->has_weight; e++)
-            r->weight_N_per_m[e] = t->mass_kg_per_m[e / 3] * load_case->gravity_m_per_s2[e % 3];
-        return;
-    }
+    int state, i_load_case = load_case_of(nets, i_net, &state);
     for (int e = 0; e < m->n_cable; e++) {
         r->stretch[e] = 1;
         r->cut_rate[e] = 0;
     }
-    hf_built_errors_apply(&r->errors, 1, r->z, r->stretch, NULL, NULL);
-    hf_built_errors_apply(&r->errors, 1, r->z, r->cut_rate, NULL, NULL);
+    if (state >= 0) {
+        hf_built_errors_apply(&r->errors, 1, r->z, r->stretch, NULL, NULL);
+        hf_built_errors_apply(&r->errors, 1, r->z, r->cut_rate, NULL, NULL);
+        for (int e = 0; e < m->n_cable; e++)
+            r->stretch[e] -= r->cut_rate[e];
+    }
+    r->has_weight = false;
+    if (i_load_case < 0) return;
+    const hf_load_case *load_case = &nets->load_cases->load_case[i_load_case];
+    const hf_material *t = &nets->load_cases->material;
     for (int e = 0; e < m->n_cable; e++)
-        r->stretch[e] -= r->cut_rate[e];
+        if (load_case->rise_K[e] != 0) r->stretch[e] *= 1 + t->expansion_per_K[e] * load_case->rise_K[e];
+    for (int c = 0; c < 3; c++)
+        r->has_weight |= load_case->gravity_m_per_s2[c] != 0;
+    for (int e = 0; e < 3 * m->n_cable && r->has_weight; e++)
+        r->weight_N_per_m[e] = t->mass_kg_per_m[e / 3] * load_case->gravity_m_per_s2[e % 3];
 }
 
 /* Solves one net and factors its Hessian, as hf_objectives_nets.linearise. A net without a shape or without stiffness
@@ -334,7 +405,8 @@ void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_f
                             .load_cases = load_cases,
                             .tolerance = tolerance,
                             .attachment_move_m = attachment_move_m,
-                            .heat = *heat};
+                            .heat = *heat,
+                            .n_sample_state = 1};
     for (int i = 0; i < n_load_case; i++)
         nets->name[i] = load_cases->load_case[i].name;
 }

@@ -211,7 +211,8 @@ static double mass_kg(const hf_required *q, const hf_required_column *c, const h
     return sum;
 }
 
-static double figure_of(const hf_required *q, const hf_required_column *c, const hf_required_shape *s, double *item)
+double hf_required_figure_of(const hf_required *q, const hf_required_column *c, const hf_required_shape *s,
+                             double *item)
 {
     const hf_surface_paths *p = &s->paths;
     switch (c->figure) { /* no default label, so that the compiler reports a figure that is missing */
@@ -246,7 +247,8 @@ void hf_required_measure(const hf_required *q, bool is_many, int state, const hf
 {
     for (int k = 0; k < q->n_column; k++) {
         item[k] = -1;
-        value[k] = is_needed(&q->column[k], is_many, state) ? figure_of(q, &q->column[k], s, &item[k]) : (double)NAN;
+        value[k] = is_needed(&q->column[k], is_many, state) ? hf_required_figure_of(q, &q->column[k], s, &item[k])
+                                                            : (double)NAN;
     }
 }
 

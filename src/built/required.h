@@ -65,6 +65,10 @@ typedef struct {
     hf_surface_paths paths; /* errors of the surface; NaN if no column needs them */
 } hf_required_shape;
 
+/* Returns the figure of a column for a shape. *item becomes the cable or support with this value, or stays. */
+double hf_required_figure_of(const hf_required *required, const hf_required_column *column,
+                             const hf_required_shape *shape, double *item);
+
 /* Returns whether load case `state` of the samples (is_many) or of the design needs errors of the surface. */
 bool hf_required_needs_surface(const hf_required *required, bool is_many, int state);
 

@@ -226,6 +226,8 @@ static void check_variables(const hf_optimize_settings *o, hf_config_faults *f)
                                    "must be in m: the place of a support has no size to take a part of");
         if (v->link == HF_LINK_SYMMETRY && o->symmetry == HF_SYMMETRY_NONE)
             hf_config_fault_in_row(f, list, i, "link", "symmetry needs optimize.symmetry, which is none");
+        if (v->link == HF_LINK_SCALE && v->vary >= HF_VARY_SUPPORT_Z)
+            hf_config_fault_in_row(f, list, i, "link", "scale needs values above 0, which displacements do not have");
         if (v->link == HF_LINK_SYMMETRY && v->vary == HF_VARY_SUPPORT_XYZ)
             hf_config_fault_in_row(f, list, i, "link",
                                    "cannot be symmetry with support_xyz: mirrored supports move apart along x or y");

@@ -168,7 +168,7 @@ static const hf_field variable_field[] = {
     {"vary", HF_FIELD_WORD, IN(variable, vary), 0, 0, NULL, "", hf_vary_word},
     {"range", HF_FIELD_AMOUNT, IN(variable, range), HF_ABOVE_ZERO, BIG, "", "", NULL},
     {"bounds", HF_FIELD_BOUNDS, IN(variable, lower), -BIG, BIG, "", "", NULL},
-    {"link", HF_FIELD_WORD, IN(variable, link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry")},
+    {"link", HF_FIELD_WORD, IN(variable, link), 0, 0, "each", "", HF_WORDS("each", "set", "symmetry", "scale")},
 };
 
 static const hf_field objective_field[] = {
@@ -233,6 +233,7 @@ static const hf_field requirement_field[] = {
     {"at_most", HF_FIELD_DOUBLE, IN(requirement, at_most), -BIG, BIG, "", "", NULL},
     {"within", HF_FIELD_BOUNDS, IN(requirement, within), -BIG, BIG, "", "", NULL},
     {"share", HF_FIELD_DOUBLE, IN(requirement, share), 0, 1, "", "", NULL},
+    {"search", HF_FIELD_WORD, IN(requirement, search), 0, 0, "on", "", HF_WORDS("on", "off")},
 };
 
 static const hf_field truss_heat_field[] = {

@@ -306,7 +306,7 @@ void hf_symmetry_average(const hf_model *m, double *initial)
     for (int leader = 0; leader < m->n_variable && m->n_leader < m->n_variable; leader++) {
         double low = initial[leader], high = low, sum = 0;
         int n = 0;
-        if (m->variable_leader[leader] != leader) continue;
+        if (m->variable_leader[leader] != leader || (m->variable && m->variable[leader].scales)) continue;
         for (int k = leader; k < m->n_variable; k++) {
             if (m->variable_leader[k] != leader) continue;
             low = fmin(low, initial[k]);
@@ -320,11 +320,17 @@ void hf_symmetry_average(const hf_model *m, double *initial)
     }
 }
 
-void hf_symmetry_follow(int n_variable, const int *leader, const double *initial, double *design)
+double hf_symmetry_weight(const hf_model *m, const double *initial, int k)
 {
-    for (int k = 0; k < n_variable; k++)
+    return initial && m->variable && m->variable[k].scales ? initial[k] / initial[m->variable_leader[k]] : 1;
+}
+
+void hf_symmetry_follow(const hf_model *m, const double *initial, double *design)
+{
+    const int *leader = m->variable_leader;
+    for (int k = 0; k < m->n_variable; k++)
         if (initial[k] == initial[leader[k]]) /* equal in every bit: the copy stays exactly symmetric */
             design[k] = design[leader[k]];
         else
-            design[k] = initial[k] + (design[leader[k]] - initial[leader[k]]);
+            design[k] = initial[k] + hf_symmetry_weight(m, initial, k) * (design[leader[k]] - initial[leader[k]]);
 }

@@ -25,6 +25,10 @@ const char *hf_symmetry_planes_text(int planes);
  * classes are unchanged. */
 void hf_symmetry_average(const hf_model *model, double *initial);
 
-/* Changes every design variable by the step of its leader from the initial design: T'_k = T_k + (T'_leader - T_leader).
- * leader, `initial` (T) and `design` (T') are [n_variable]. */
-void hf_symmetry_follow(int n_variable, const int *leader, const double *initial, double *design);
+/* Returns the step of design variable k per step of its leader: 1 or, with link: scale, the ratio of their initial
+ * values. initial [n_variable] is NULL if no design variable scales. */
+double hf_symmetry_weight(const hf_model *model, const double *initial, int k);
+
+/* Changes every design variable by the step of its leader from the initial design: T'_k = T_k + w_k (T'_leader -
+ * T_leader), with the weight w_k of hf_symmetry_weight. `initial` (T) and `design` (T') are [n_variable]. */
+void hf_symmetry_follow(const hf_model *model, const double *initial, double *design);

@@ -132,8 +132,8 @@ static hf_status add_supports(maker *q, int row, int n_picked)
 
 /* ---- links ---- */
 
-/* Lets the design variables of a row with link: set follow the first one. For support_xyz, each component follows the
- * same component of the first support. */
+/* Lets the design variables of a row with link: set or link: scale follow the first one. For support_xyz, each
+ * component follows the same component of the first support. */
 static void link_sets(const maker *q)
 {
     hf_model *m = q->m;
@@ -143,7 +143,9 @@ static void link_sets(const maker *q)
         const hf_variable_settings *s = &q->settings->variable_row[m->variable[k].setting];
         int n_component = s->vary == HF_VARY_SUPPORT_XYZ ? 3 : 1;
         if (k == 0 || m->variable[k].setting != m->variable[k - 1].setting) first = k;
-        if (s->link == HF_LINK_SET) m->variable_leader[k] = first + (k - first) % n_component;
+        m->variable[k].scales = s->link == HF_LINK_SCALE;
+        if (s->link == HF_LINK_SET || s->link == HF_LINK_SCALE)
+            m->variable_leader[k] = first + (k - first) % n_component;
         m->n_leader += m->variable_leader[k] == k;
     }
 }

@@ -3,16 +3,28 @@
 #include "run/problem_nets.h"
 
 #include "base/arena.h"
-#include "built/built_nets.h"
+#include "built/constraints.h"
 #include "run/load_case_stage.h"
 #include "run/tolerance_stage.h"
 
+#include <math.h>
+#include <string.h>
+
 struct hf_problem_nets {
     hf_built_nets nets;
-    hf_material material;       /* expansion of the cables of samples */
-    double *attachment_move_m;  /* [n_load_case][3 n_attachment] m */
-    double *truss_move_m_per_K; /* [n_truss][3 n_attachment] m/K, of samples */
+    hf_material material;            /* expansion of the cables of samples */
+    double *attachment_move_m;       /* [n_load_case][3 n_attachment] m */
+    double *truss_move_m_per_K;      /* [n_truss][3 n_attachment] m/K, of samples */
+    hf_tolerance_settings tolerance; /* of the samples of a search under requirements */
+    hf_required required;
+    hf_material masses; /* mass of the cables, if a requirement needs it */
+    hf_built_constraints constraints;
 };
+
+/* The verdict takes other samples than the search, so that no design is judged by the samples to which it was
+ * fitted. */
+#define SEED_OF_SEARCH 0x9e3779b97f4a7c15u
+#define TAIL_LEAST 2 /* minimum number of samples that a share lets fail in the search */
 
 static bool is_over_load_cases(const hf_objective_settings *g, int n)
 {
@@ -26,7 +38,13 @@ static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_
 {
     struct hf_problem_nets *q = p->nets;
     const hf_case *c = &p->settings;
+    const hf_tolerance_settings *tolerance = &c->tolerance;
     bool is_on_truss = has_load_cases && p->model.n_attachment > 0, is_warm = c->tolerance.sigma_temperature_K > 0;
+    if (c->n_requirement > 0) {
+        q->tolerance = c->tolerance;
+        q->tolerance.seed ^= SEED_OF_SEARCH;
+        tolerance = &q->tolerance;
+    }
     if (n_sample > 0) HF_TRY(hf_tolerance_stage_check(p, false, messages));
     if (n_sample > 0 && is_warm) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
     hf_built_heat heat = {is_warm ? q->material.expansion_per_K : NULL,
@@ -38,33 +56,89 @@ static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_
         return hf_error(messages, status, "hifdm cannot solve the truss of the as-built nets in the objectives: %s",
                         hf_status_text(status));
     hf_built_nets_make(&p->scene, &p->model, &c->form, has_load_cases ? &p->load_cases : NULL,
-                       is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? &c->tolerance : NULL, &heat, n_sample,
+                       is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? tolerance : NULL, &heat, n_sample,
                        &q->nets);
     return HF_OK;
+}
+
+/* Returns the number of samples that the search needs. */
+static int count_samples(const hf_problem *p)
+{
+    const hf_case *c = &p->settings;
+    int n = hf_optimize_takes_samples(&c->optimize) ? c->optimize.samples : 0;
+    for (int i = 0; i < c->n_requirement; i++) {
+        const hf_requirement_settings *r = &c->requirement[i];
+        if (r->search == HF_SEARCH_OFF || !(r->share > 0)) continue;
+        int least = (int)ceil(TAIL_LEAST / (1 - r->share));
+        if (n < c->optimize.samples) n = c->optimize.samples;
+        if (n < least) n = least;
+    }
+    return n;
+}
+
+static bool constrains(const hf_problem *p)
+{
+    bool is_any = false;
+    for (int i = 0; i < p->settings.n_requirement; i++)
+        is_any |= p->settings.requirement[i].search == HF_SEARCH_ON;
+    return is_any;
+}
+
+/* Adds to the nets the load cases of samples, and makes the constraints. */
+static hf_status make_constraints(hf_problem *p, hf_messages *messages)
+{
+    struct hf_problem_nets *q = p->nets;
+    const hf_case *c = &p->settings;
+    HF_TRY(hf_config_material(c, &p->scene, &q->masses, messages));
+    hf_status status = hf_required_create(c->n_requirement, c->requirement, &p->scene, &p->load_cases,
+                                          q->masses.mass_kg_per_m, &q->required);
+    if (status == HF_OK) {
+        unsigned many = hf_built_constraints_states(&q->required, true);
+        bool has_nets = many || hf_built_constraints_states(&q->required, false) > 1u;
+        for (int state = 1; state < q->required.n_state; state++)
+            if (many >> state & 1u) q->nets.sample_load_case[q->nets.n_sample_state++] = state - 1;
+        status = hf_built_constraints_make(&q->required, &p->model, has_nets ? &q->nets : NULL, &p->surface, &p->facets,
+                                           &q->constraints);
+    }
+    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the requirements");
 }
 
 hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
+    bool is_constrained = constrains(p);
     bool has_load_cases = is_over_load_cases(o->term, o->n_term) || is_over_load_cases(o->front, o->n_front);
-    int n_sample = hf_optimize_takes_samples(o) ? o->samples : 0;
+    int n_sample = count_samples(p);
     size_t n = 3 * (size_t)p->model.n_attachment;
     double *move_m, *by_heat;
     void *block; /* p->nets is the first item */
-    if (!has_load_cases && n_sample == 0) return HF_OK;
+    for (int i = 0; i < p->settings.n_requirement; i++)
+        has_load_cases |= strcmp(p->settings.requirement[i].load_case, "nominal") != 0;
+    if (!has_load_cases && n_sample == 0 && !is_constrained) return HF_OK;
     if (HF_ARENA_ARRAYS(&block, HF_ARRAY(p->nets, 1), HF_ARRAY(move_m, (size_t)p->load_cases.n * n),
                         HF_ARRAY(by_heat, (size_t)p->settings.tolerance.n_truss * n)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the as-built nets in the objectives");
     p->nets->attachment_move_m = move_m;
     p->nets->truss_move_m_per_K = by_heat;
-    return make_nets(p, has_load_cases, n_sample, messages);
+    HF_TRY(make_nets(p, has_load_cases, n_sample, messages));
+    return is_constrained ? make_constraints(p, messages) : HF_OK;
 }
 
 void hf_problem_nets_free(hf_problem *p)
 {
-    if (p->nets) hf_material_free(&p->nets->material);
+    if (p->nets) {
+        hf_material_free(&p->nets->material);
+        hf_material_free(&p->nets->masses);
+        hf_arena_free_block(p->nets->constraints.block);
+        hf_required_free(&p->nets->required);
+    }
     hf_arena_free_block(p->nets);
     p->nets = NULL;
+}
+
+const hf_constraints *hf_problem_constraints_of(const hf_problem *p)
+{
+    return p->nets && p->nets->constraints.as.n > 0 ? &p->nets->constraints.as : NULL;
 }
 
 const hf_objectives_nets *hf_problem_nets_of(const hf_problem *p)

@@ -10,3 +10,6 @@ void hf_problem_nets_free(hf_problem *problem);
 
 /* Returns the nets for hf_objectives_create, or NULL if no objective is over nets. */
 const hf_objectives_nets *hf_problem_nets_of(const hf_problem *problem);
+
+/* Returns the constraints that the rows of `requirements` set on designs, or NULL. */
+const hf_constraints *hf_problem_constraints_of(const hf_problem *problem);

@@ -18,6 +18,7 @@
 #include "net/symmetry.h"
 #include "net/variables.h"
 #include "run/problem_nets.h"
+#include "run/requirements_stage.h"
 #include "search/refine.h"
 #include "surface/facet_mesh.h"
 #include "solve/limits.h"
@@ -129,11 +130,13 @@ static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_status limits = hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), objectives = HF_OK;
-    bool has_objectives = o->n_term || o->n_front;
-    if (has_objectives) objectives = hf_problem_nets_make(p, messages);
+    bool has_objectives = o->n_term || o->n_front || p->settings.n_requirement;
+    if (has_objectives && objectives == HF_OK) objectives = hf_problem_nets_make(p, messages);
+    has_objectives = o->n_term || o->n_front || hf_problem_constraints_of(p);
     if (has_objectives && objectives == HF_OK)
         objectives = hf_objectives_create(&p->scene, &p->model, o, &p->surface, &p->facets, hf_problem_nets_of(p),
                                           &p->objectives, messages);
+    p->objectives.constraints = hf_problem_constraints_of(p);
     return limits != HF_OK ? limits : objectives;
 }
 
@@ -176,6 +179,7 @@ static hf_status load_parts(const char *path, const hf_problem_source *source, c
         const hf_truss *truss = p->settings.has_truss ? &p->carrier.truss : NULL;
         HF_TRY(hf_config_load_cases(&p->settings, &p->scene, truss, &p->load_cases, messages));
     }
+    HF_TRY(hf_requirements_stage_check(p, messages));
     if (!p->settings.has_optimize) return HF_OK;
     hf_status aims = judge_by_rows(p, messages);
     HF_TRY(rows != HF_OK ? rows : aims);
@@ -273,7 +277,8 @@ hf_evaluator hf_problem_evaluator(const hf_problem *p)
                           .solver = o->solver,
                           .boundary_ratio_cap = p->settings.has_optimize ? o->boundary_ratio_cap : INFINITY,
                           .limits = p->limits.n ? &p->limits : NULL,
-                          .objectives = p->objectives.n_objective ? &p->objectives : NULL};
+                          .objectives = p->objectives.n_objective ? &p->objectives : NULL,
+                          .initial = p->initial};
 }
 
 /* Checks that design variable k has an initial value and bounds that allow values; those of cables must be above zero.

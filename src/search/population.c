@@ -63,13 +63,15 @@ static void link_bounds(const hf_model *m, hf_population *p)
         if (leader_of[leader] != leader) continue;
         for (int k = leader; k < p->n_variable; k++) {
             if (leader_of[k] != leader) continue;
-            low = fmax(low, p->lower[k] - p->initial[k]);
-            high = fmin(high, p->upper[k] - p->initial[k]);
+            double weight = hf_symmetry_weight(m, p->initial, k); /* values of a row that scales are above 0 */
+            low = fmax(low, (p->lower[k] - p->initial[k]) / weight);
+            high = fmin(high, (p->upper[k] - p->initial[k]) / weight);
         }
         for (int k = leader; low < high && k < p->n_variable; k++) {
             if (leader_of[k] != leader) continue;
-            p->lower[k] = fmax(p->lower[k], p->initial[k] + low);
-            p->upper[k] = fmin(p->upper[k], p->initial[k] + high);
+            double weight = hf_symmetry_weight(m, p->initial, k);
+            p->lower[k] = fmax(p->lower[k], p->initial[k] + weight * low);
+            p->upper[k] = fmin(p->upper[k], p->initial[k] + weight * high);
         }
     }
 }
@@ -77,7 +79,7 @@ static void link_bounds(const hf_model *m, hf_population *p)
 void hf_population_link(const hf_population *population, const hf_model *m, double *design)
 {
     if (m->n_leader == m->n_variable) return;
-    hf_symmetry_follow(population->n_variable, m->variable_leader, population->initial, design);
+    hf_symmetry_follow(m, population->initial, design);
     for (int k = 0; k < population->n_variable; k++)
         design[k] = hf_population_clamp(population, k, design[k]);
 }

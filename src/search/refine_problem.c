@@ -7,6 +7,7 @@
 
 #include "linalg/band.h"
 #include "linalg/dot.h"
+#include "net/symmetry.h"
 #include "search/parallel.h"
 
 #include <limits.h>
@@ -80,10 +81,11 @@ void hf_refine_begin(hf_refine_problem *p, const double *design)
             upper = INFINITY;
             unit = start;
         }
+        double weight = hf_symmetry_weight(m, p->v.initial, k);
         p->start[k] = start;
-        p->low[i] = fmax(p->low[i], fmin(lower - start, 0));
-        p->high[i] = fmin(p->high[i], fmax(upper - start, 0));
-        p->unit[i] = fmax(p->unit[i], unit);
+        p->low[i] = fmax(p->low[i], fmin(lower - start, 0) / weight);
+        p->high[i] = fmin(p->high[i], fmax(upper - start, 0) / weight);
+        p->unit[i] = fmax(p->unit[i], unit / weight);
     }
     memcpy(p->best, design, (size_t)m->n_variable * sizeof(double));
     memcpy(p->design, p->start, (size_t)m->n_variable * sizeof(double));
@@ -115,6 +117,10 @@ hf_status hf_refine_create(hf_refine_problem *to)
     to->n_state = N_SCALAR + 3 * n + n_variable;
     HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_REFINE_FIELDS(HF_ARENA_ITEM)));
     aim(to);
+    if (hf_refine_n_constraint(to) > 0) {
+        to->watch.constraint = hf_residuals_point(&to->residuals)->constraint;
+        to->watch.constraint_rate = to->constraint_rate;
+    }
     return hf_quadratic_create(to->n + to->has_corners, &to->step);
 }
 
@@ -140,7 +146,8 @@ hf_status hf_refine_evaluate(hf_refine_problem *p, const double *step)
 {
     const hf_model *m = p->v.model;
     for (int k = 0; k < m->n_variable; k++) {
-        double value = p->start[k] + step[p->slopes.class_of_variable[k]];
+        double weight = hf_symmetry_weight(m, p->v.initial, k);
+        double value = p->start[k] + weight * step[p->slopes.class_of_variable[k]];
         p->design[k] = hf_refine_is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
     }
     p->evaluations++;
@@ -212,6 +219,13 @@ static void linearise_front(hf_refine_problem *p)
             press(p, k, first, g->objective[k].n_row);
 }
 
+/* Writes the rates of the design by a class of design variables, as an hf_constraints_spread. */
+static const double *spread(const void *slopes, int i_class, double *move_m, double *tension_rate)
+{
+    hf_sensitivity_spread(slopes, i_class, move_m, tension_rate);
+    return hf_sensitivity_displacement(slopes, i_class, 0);
+}
+
 hf_status hf_refine_linearise(hf_refine_problem *p)
 {
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
@@ -227,6 +241,9 @@ hf_status hf_refine_linearise(hf_refine_problem *p)
     }
     p->noise = find_noise(p);
     if (p->front) linearise_front(p);
+    if (hf_refine_n_constraint(p) > 0)
+        HF_TRY(p->v.objectives->constraints->linearise(hf_residuals_point(&p->residuals)->constraints, p->n, spread,
+                                                       &p->slopes, p->constraint_rate));
     hf_watch_linearise(&p->watch, &p->slopes, p->w);
     return HF_OK;
 }

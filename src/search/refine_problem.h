@@ -29,6 +29,7 @@
     X(double, gradient, n + 1, "[n] J'f")                                                                              \
     X(double, objective_rate, to->front ? n *(size_t)to->v.objectives->n_objective : 0,                                \
       "[n_objective][n] gradients of objectives without corners, for a point of a front")                              \
+    X(double, constraint_rate, n *hf_refine_n_constraint(to), "[n_constraint][n] rates of the constraints")            \
     X(double, state, to->front ? 0 : to->n_state, "the state of the run for hf_refine_watcher")
 
 /* The tensions T and the force densities T/l of a shape describe the same shape. But the shape depends far more
@@ -65,6 +66,13 @@ typedef struct {
     double noise; /* part of the merit that the tolerance of the form-finding leaves open */
     void *block;
 } hf_refine_problem;
+
+/* Returns the number of constraints by requirements. */
+static inline size_t hf_refine_n_constraint(const hf_refine_problem *problem)
+{
+    const hf_objectives *objectives = problem->v.objectives;
+    return objectives && objectives->constraints ? (size_t)objectives->constraints->n : 0;
+}
 
 /* Allocates the problem, in which the caller has set v, caller, lower, upper, w and front. Returns HF_OK or
  * HF_NO_MEMORY; call hf_refine_destroy in either case. */

@@ -9,6 +9,7 @@
 #include "search/sensitivity.h"
 
 #include "linalg/dot.h"
+#include "net/symmetry.h"
 #include "search/parallel.h"
 #include "solve/newton_matrix.h"
 
@@ -152,6 +153,7 @@ static void add_force_of_variable(const hf_sensitivity *s, const hf_workspace *w
     hf_variable_sets sets = hf_evaluate_sets(s->v, k);
     double length = sets == HF_SETS_DENSITY ? hf_evaluate_divisor(s->v, k) : w->length_m[e], rate = 1;
     if (sets == HF_SETS_LENGTH || sets == HF_SETS_CUT) rate = direct_tension(s, w, k, length);
+    rate *= hf_symmetry_weight(m, s->v->initial, k);
     for (int c = 0; c < 3; c++) {
         const double *x = w->position_m + (ptrdiff_t)c * m->n_node;
         pull[c] = (x[m->end_row[2 * e + 1]] - x[m->end_row[2 * e]]) / length * rate;
@@ -272,7 +274,7 @@ static hf_strained look_at(const hf_sensitivity *s, const hf_workspace *w, int e
     double length = hf_newton_matrix_direction(m, w->position_m, e, q.unit);
     q.stiffness_N_per_m = hf_newton_matrix_stiffness(hf_workspace_cable(m, w, e), length, w->tension_N[e]);
     if (variable < 0) return q;
-    q.direct = direct_tension(s, w, variable, length);
+    q.direct = direct_tension(s, w, variable, length) * hf_symmetry_weight(m, s->v->initial, variable);
     q.class = s->class_of_variable[variable];
     return q;
 }

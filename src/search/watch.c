@@ -22,7 +22,7 @@
 /* ---- items ---- */
 
 /* An item without an index and without a limit. */
-static const hf_watched no_item = {-1, -1, -1, -1, -1, .lower = -INFINITY, .upper = INFINITY};
+static const hf_watched no_item = {-1, -1, -1, -1, -1, -1, .lower = -INFINITY, .upper = INFINITY};
 
 /* Adds an item. It is only counted while there is no memory. */
 static void add(hf_watch *q, hf_watched item)
@@ -108,6 +108,14 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     }
     for (int i = 0; v->limits && i < v->limits->n; i++)
         add_row(v, &v->limits->row[i], q);
+    const hf_constraints *constraints = v->objectives ? v->objectives->constraints : NULL;
+    for (int k = 0; constraints && k < constraints->n; k++) {
+        hf_watched item = no_item;
+        item.constraint = k;
+        item.kind = HF_WATCH_ROW;
+        item.upper = 0;
+        add(q, item);
+    }
     q->n_cap_of_limits = q->n_cap;
     for (int k = 0; q->front && k < v->objectives->n_objective; k++)
         add_objective(v, q->front, k, q);
@@ -142,7 +150,9 @@ static void look(hf_watch *q, const hf_workspace *w)
     for (int i = 0; i < q->n; i++) {
         hf_watched *t = &q->item[i];
         const double *d = w->displacement_m + 3 * (ptrdiff_t)(t->attachment < 0 ? 0 : t->attachment);
-        if (t->cable >= 0)
+        if (t->constraint >= 0)
+            t->now = q->constraint[t->constraint];
+        else if (t->cable >= 0)
             t->now = w->tension_N[t->cable];
         else if (t->attachment >= 0)
             t->now = hf_norm(d[0], d[1], d[2]);
@@ -184,6 +194,7 @@ double hf_watch_violation(hf_watch *q, const hf_workspace *w)
         const hf_watched *t = &q->item[i];
         if (t->kind == HF_WATCH_BOUND)
             sum += hf_limits_tension_violation(q->v->model, w->tension_N[t->cable], t->lower, t->upper);
+        if (t->constraint >= 0) sum += fmax(0, t->now) / q->v->objectives->constraints->unit[t->constraint];
         if (t->kind == HF_WATCH_OBJECTIVE) sum += fmax(0, t->now - t->upper) / t->unit;
     }
     return sum;
@@ -227,12 +238,16 @@ void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, const hf_workspace
         t->value = t->now;
         t->unit = t->cable >= 0 ? fabs(t->value) : isfinite(t->upper) ? t->upper : t->lower;
         if (t->kind == HF_WATCH_LEVEL) t->unit = fmax(t->value, 1);
-        if (t->cable >= 0)
+        if (t->constraint >= 0) {
+            t->unit = q->v->objectives->constraints->unit[t->constraint];
+            rate = q->constraint_rate + (size_t)t->constraint * (size_t)q->n_class;
+        } else if (t->cable >= 0) {
             hf_sensitivity_tension(s, t->cable, q->by_item);
-        else if (t->attachment >= 0)
+        } else if (t->attachment >= 0) {
             displacement_rates(t, s, w, q->by_item);
-        else if (t->support < 0)
+        } else if (t->support < 0) {
             rate = q->objective_rate + (size_t)t->objective * (size_t)q->n_class;
+        }
         for (int j = 0; j < q->n_class && t->support < 0; j++)
             *rate_at(q, i, j) = rate[j];
         has_pull |= t->support >= 0;

@@ -1,5 +1,6 @@
 /* watch - keeps a step of Levenberg-Marquardt within limits other than the bounds of its variables. They are bounds of
- * tensions, and limits on ratios of tensions, on deflections of attachments and on objectives. Each limit is linear in
+ * tensions, constraints by requirements, and limits on ratios of tensions, on deflections of attachments and on
+ * objectives. Each limit is linear in
  * the step to first order. `bend` is what the value was beyond the linear model at the last trial. With it, a step that
  * breaks a limit is solved again. */
 #pragma once
@@ -22,6 +23,7 @@ typedef struct {
      * indices that it does not need are -1. */
     int cable, attachment;
     int support, objective; /* goal: objective that the item limits; with no other index, the item itself */
+    int constraint;         /* constraint by a requirement, or -1 */
     int ratio;              /* index of the cap to which the item belongs, or -1 */
     int kind;               /* HF_WATCH_BOUND, HF_WATCH_ROW, HF_WATCH_LEVEL or HF_WATCH_OBJECTIVE */
     double lower, upper;    /* bounds; infinite if only a cap limits the item */
@@ -52,11 +54,13 @@ typedef struct {
     int n, ld, n_class, n_cap, n_cap_of_limits;
     bool has_cap; /* true if the first cap is that of the boundary tension ratio */
     HF_WATCH_FIELDS(HF_ARENA_MEMBER)
-    const hf_watch_front *front;  /* NULL: no objective is limited */
-    const double *objective;      /* [n_objective], objectives of the measured shape; borrowed; NULL without `front` */
-    hf_objectives_point *point;   /* scratch for forces on supports; borrowed; NULL without `front` */
-    const double *objective_rate; /* [n_objective][n_class], rates of objectives without corners, borrowed */
-    double level;                 /* value of a minimised objective with corners, or the logarithm of a ratio */
+    const hf_watch_front *front;   /* NULL: no objective is limited */
+    const double *objective;       /* [n_objective], objectives of the measured shape; borrowed; NULL without `front` */
+    hf_objectives_point *point;    /* scratch for forces on supports; borrowed; NULL without `front` */
+    const double *objective_rate;  /* [n_objective][n_class], rates of objectives without corners, borrowed */
+    const double *constraint;      /* [n_constraint], distances of the measured shape; borrowed; NULL: none */
+    const double *constraint_rate; /* [n_constraint][n_class], their rates, borrowed */
+    double level;                  /* value of a minimised objective with corners, or the logarithm of a ratio */
     void *block;
 } hf_watch;
 

@@ -151,11 +151,25 @@ void hf_evaluate_prepare(const hf_evaluator *v, const double *design, hf_workspa
         apply_variable(v, k, design[k], w);
 }
 
+/* Measures the constraints by requirements, and adds their violation. The refinement measures their smooth form and
+ * keeps its steps within them itself. */
+static hf_status judge_constraints(const hf_evaluator *v, const hf_workspace *w, hf_objectives_point *point,
+                                   hf_form_result *r)
+{
+    const hf_constraints *c = v->objectives ? v->objectives->constraints : NULL;
+    if (!c) return HF_OK;
+    HF_TRY(c->measure(point->constraints, w, v->by_density, point->constraint));
+    for (int k = 0; k < c->n && !v->by_density; k++)
+        r->violation += fmax(0, point->constraint[k]) / c->unit[k];
+    return HF_OK;
+}
+
 hf_status hf_evaluate_judge(const hf_evaluator *v, const hf_workspace *w, hf_objectives_point *point, hf_form_result *r)
 {
     bool has_shape = r->status == HF_OK, breaks_cap = is_above_cap(v, r);
     r->violation = has_shape ? 0 : (double)NAN;
     if (has_shape && (v->limits || breaks_cap)) r->violation = hf_limits_violation(v, w);
+    if (has_shape && judge_constraints(v, w, point, r) != HF_OK) r->status = HF_NO_MEMORY;
     if (has_shape && r->violation > 0) r->status = HF_OUT_OF_LIMITS;
     if (breaks_cap) r->status = HF_RATIO_CAP;
     if (has_shape && v->objectives && /* feasible or not */

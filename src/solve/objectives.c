@@ -81,6 +81,7 @@ static void lay_out_point(hf_arena *a, const hf_objectives *objectives, hf_objec
     p->net_value = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_norm = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_part = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
+    p->constraint = hf_arena_take(a, objectives->constraints ? (size_t)objectives->constraints->n : 0, sizeof(double));
     p->cloud = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->cloud);
     p->gain = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->gain);
     for (int k = 0; k < objectives->n_objective; k++) {
@@ -102,12 +103,16 @@ hf_status hf_objectives_point_create(const hf_objectives *objectives, hf_objecti
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out_point(&arena, objectives, point)));
     point->block = arena.block;
     point->free_nets = objectives->nets ? objectives->nets->close : NULL;
+    const hf_constraints *c = objectives->constraints;
+    point->free_constraints = c ? c->close : NULL;
+    if (c) HF_TRY(c->open(c, &point->constraints));
     return objectives->nets ? objectives->nets->open(objectives->nets, &point->nets) : HF_OK;
 }
 
 void hf_objectives_point_free(hf_objectives_point *point)
 {
     if (point->nets) point->free_nets(point->nets);
+    if (point->constraints) point->free_constraints(point->constraints);
     hf_arena_free_block(point->block);
     *point = (hf_objectives_point){0};
 }

@@ -321,8 +321,10 @@ static void read_rows(hf_hdf5 *io, hid_t group, stored_search *a)
         if (of[k] < 0 || of[k] >= o->n_variable_row)
             hf_hdf5_damaged(io, io->file, "/variable", "has design variables of other rows than the case");
         else
-            a->model.variable[k] =
-                (hf_variable){.vary = o->variable_row[of[k]].vary, .setting = of[k], .support_row = -1};
+            a->model.variable[k] = (hf_variable){.vary = o->variable_row[of[k]].vary,
+                                                 .setting = of[k],
+                                                 .support_row = -1,
+                                                 .scales = o->variable_row[of[k]].link == HF_LINK_SCALE};
     }
     free(of);
 }

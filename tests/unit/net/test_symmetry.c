@@ -196,9 +196,16 @@ START_TEST(linked_genes_share_the_step)
     ck_assert_double_eq(initial[0], initial[1]); /* alike: their mean */
     ck_assert_double_eq_tol(initial[0], 10 * (1 + 2.5e-7), 1e-12);
     ck_assert(initial[2] == 3 && initial[3] == 4); /* not alike: each keeps its own */
-    hf_symmetry_follow(4, leader, initial, design);
+    hf_symmetry_follow(&m, initial, design);
     ck_assert(design[0] == 10.75 && design[1] == 10.75);
     ck_assert(design[2] == 3.5 && design[3] == 4.5);
+    hf_variable variable[4] = {[2] = {.scales = true}, [3] = {.scales = true}};
+    m.variable = variable;
+    hf_symmetry_follow(&m, initial, design);
+    ck_assert(design[2] == 3.5);
+    ck_assert_double_eq_tol(design[3], 4 * (3.5 / 3), 1e-15); /* the same factor */
+    ck_assert_double_eq_tol(hf_symmetry_weight(&m, initial, 3), 4.0 / 3, 1e-15);
+    ck_assert_double_eq(hf_symmetry_weight(&m, initial, 1), 1);
 }
 END_TEST
 
