@@ -69,6 +69,8 @@ HF_API_BEGIN
     X(int, evaluations, INT, .json = 1, .description = "form-findings")                                                \
     X(hf_refine_stop, algorithm_stop, REFINE_STOP, .json = 4, .key = "stop_reason",                                    \
       .description = "why the algorithm ended")                                                                        \
+    X(double, predicted_gain, REAL, .json = 4,                                                                         \
+      .description = "part of the merit (psi) by which the linear model would still lower it; NaN: not known")         \
     X(int, n_at_lower, INT, .json = 5, .key = "at_lower_bound",                                                        \
       .description = "design variables at their lower bounds")                                                         \
     X(int, n_at_upper, INT, .json = 5, .key = "at_upper_bound",                                                        \

@@ -36,6 +36,9 @@ void hf_print_gained(double psi_m, double initial_psi_m, const char *of, FILE *f
             hf_print_decimals(initial_psi_m * 1e3).text);
 }
 
+/* A settled or stalled refinement whose model predicts more than this part of the merit has not followed its model. */
+#define REFUTED 1e-4
+
 void hf_print_iterations(const hf_form_result *r, FILE *f)
 {
     static const char *const before[] = {
@@ -55,10 +58,17 @@ void hf_print_generations(const hf_search_summary *s, FILE *f)
 void hf_print_steps(const hf_refine_summary *r, FILE *f)
 {
     static const char *const before[] = {"converged", "stalled", "not converged", "settled", "none"};
-    static const char *const why[] = {"", ": shorter steps gain nothing", "", ": the last ten gained less than 1e-6",
+    static const char *const why[] = {"", ": shorter steps gain nothing", "", ": the last five gained less than 0.01 %",
                                       ""};
     fprintf(f, "%s after %d step%s%s", before[r->algorithm_stop], r->steps, r->steps == 1 ? "" : "s",
             why[r->algorithm_stop]);
+    if (r->algorithm_stop == HF_REFINE_CONVERGED || !isfinite(r->predicted_gain)) return;
+    bool is_refuted = r->algorithm_stop != HF_REFINE_MAX_ITERATIONS && r->predicted_gain > REFUTED;
+    fprintf(f, "%s the model predicts at most %.2g %% less",
+            r->algorithm_stop == HF_REFINE_MAX_ITERATIONS ? ":"
+            : is_refuted                                  ? ", although"
+                                                          : ",",
+            100 * r->predicted_gain);
 }
 
 void hf_print_held(const hf_held_limits *h, FILE *f)

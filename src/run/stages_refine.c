@@ -18,6 +18,7 @@
 
 #define PUBLISH_AFTER_S 1.0 /* a shorter refinement publishes no file between steps */
 #define LATELY 10           /* steps whose gain a warning about convergence reports */
+#define WORTH 1e-4          /* smaller gains are not reported as a reason to continue [as for settled runs, refine.c] */
 
 /* ---- the design ---- */
 
@@ -54,6 +55,7 @@ hf_status hf_stage_point(hf_run *r, hf_summary *s, hf_messages *messages)
     s->refine.is_result = true;
     s->refine.evaluations = 1;
     s->refine.algorithm_stop = HF_REFINE_TAKEN;
+    s->refine.predicted_gain = NAN;
     hf_stage_count_at_bounds(p, design, &s->refine.n_at_lower, &s->refine.n_at_upper);
     return keep_design(r, design, s, messages);
 }
@@ -108,20 +110,26 @@ static hf_status between_steps(void *context, const hf_refine_progress *now)
     return hf_run_must_stop(q->run) ? HF_INTERRUPTED : HF_OK;
 }
 
-/* Warns if the steps ended before convergence, because such a result looks like a converged one. */
+/* Warns if the steps ended before convergence, because such a result looks like a converged one. Better designs are
+ * claimed only if the model predicts them and the last steps have confirmed the model. At a corner of an objective, the
+ * model predicts gains that no step reaches. */
 static void warn_of_steps(const steps *q, const hf_refine_result *r)
 {
     int n = r->iterations - q->first_iteration < LATELY ? r->iterations - q->first_iteration : LATELY;
     double before = q->merit[(r->iterations - n) % (LATELY + 1)];
+    double gain = n > 0 && before > 0 ? 1 - q->now.merit / before : 0;
+    const char *what = has_merit(q) ? "the merit" : "psi";
+    char lately[96] = "", predicted[96] = "";
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
-    if (n > 0 && before > 0)
-        hf_warning(q->messages,
-                   "Levenberg-Marquardt has not converged after %d steps, and the last %d steps lowered %s by %.2g %%. "
-                   "Better designs exist near this design. Raise optimize.refine_steps",
-                   r->iterations, n, has_merit(q) ? "the merit" : "psi", 100 * (1 - q->now.merit / before));
+    if (n > 0) snprintf(lately, sizeof lately, ": the last %d steps lowered %s by %.2g %%", n, what, 100 * gain);
+    if (isfinite(r->predicted_gain))
+        snprintf(predicted, sizeof predicted, "; the model predicts at most %.2g %% less", 100 * r->predicted_gain);
+    if (r->predicted_gain > WORTH && gain > WORTH)
+        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps. Better designs are near%s%s. %s",
+                   r->iterations, lately, predicted, "Raise optimize.refine_steps");
     else
-        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps. Raise optimize.refine_steps",
-                   r->iterations);
+        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps%s%s", r->iterations, lately,
+                   predicted);
 }
 
 /* Notes where the refinement has stopped, for the message of an interrupted run. */
@@ -139,13 +147,14 @@ static void note_stop(const steps *q, char stopped_at[HF_STOPPED_AT_SIZE])
 static hf_status find_steps(hf_run *r, hf_summary *s, hf_refine_result *outcome, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
+    const hf_optimize_settings *settings = &p->settings.optimize;
     const hf_population *bounds = &r->optimiser.population;
     steps q = {.run = r, .summary = s, .messages = messages, .begin_s = hf_clock_s()};
     hf_refine_watcher watcher = {.after = between_steps, .context = &q};
     hf_run_report(&r->request->control, (hf_run_progress){.phase = HF_RUN_REFINE, .best_psi_m = NAN, .merit = NAN});
     HF_TRY(hf_store_restore_refine(r->store, &q.earlier_s, &watcher.n_state, &watcher.state, messages));
-    hf_status status = hf_refine_run(&p->evaluator, bounds->lower, bounds->upper, p->settings.optimize.refine_steps,
-                                     NULL, &watcher, r->design, &p->workspace, outcome);
+    hf_status status = hf_refine_run(&p->evaluator, bounds->lower, bounds->upper, settings->refine_steps, NULL,
+                                     &watcher, r->design, &p->workspace, outcome);
     s->stage[HF_STAGE_REFINE].wall_s = q.earlier_s + hf_clock_s() - q.begin_s;
     if (hf_run_must_stop(r)) {
         note_stop(&q, r->stopped_at);
@@ -195,6 +204,7 @@ hf_status hf_stage_refine(hf_run *r, hf_summary *s, hf_messages *messages)
     s->refine.steps = outcome.iterations;
     s->refine.evaluations = outcome.evaluations;
     s->refine.algorithm_stop = outcome.stop;
+    s->refine.predicted_gain = outcome.predicted_gain;
     s->refine.n_at_lower = outcome.n_at_lower;
     s->refine.n_at_upper = outcome.n_at_upper;
     s->refine.n_at_limit = outcome.n_at_limit;

@@ -23,8 +23,8 @@
 #define GAIN_CONVERGED 1e-12  /* converged: a step promises less than this part of merit^2 [1e-15 to 1e-8] */
 #define FRONT_CONVERGED 1e-20 /* converged, for a point of a front: its multipliers must be accurate */
 #define DAMPING_FIRST 1e-3    /* first damping, relative to the squared columns of J [1e-6 to 1] */
-/* The multipliers are found with this damping, which is nearly none. */
-#define DAMPING_OF_MULTIPLIERS 1e-9
+/* The multipliers and the gain that the model still predicts are found with this damping, which is nearly none. */
+#define DAMPING_NEARLY_NONE 1e-9
 #define SCALE_LEAST 1e-8    /* a column of J below this part of the maximum one is damped like the maximum */
 #define DAMPING_LEAST 1e-14 /* minimum damping [1e-20 to 1e-8] */
 #define DAMPING_MOST 1e12   /* stalled: with more damping, a step is too short to change psi [1e4 to 1e24] */
@@ -38,12 +38,16 @@
 #define BENDS_MAX 4          /* corrections of a step for the curvature of its residuals [2 to 4] */
 /* A step that gains more than this part of what it promises needs no such correction [0.65 to 0.75; 0.5 fails]. */
 #define BEND_BELOW 0.65
-/* A run has settled if two conditions hold over SETTLED_STEPS steps. The merit falls by less than SETTLED_MERIT of it,
- * and no weight x objective changes by more than SETTLED_OBJECTIVE of the merit. The merit is reported to six digits.
- * An objective of little weight may still improve when the merit hardly changes. */
-#define SETTLED_STEPS 10
-#define SETTLED_MERIT 1e-6
-#define SETTLED_OBJECTIVE 1e-5
+/* A run has settled if SETTLED_STEPS successive steps each promise less than SETTLED_GAIN of the merit and together
+ * gain less, and if the model without damping promises less, too. At a corner or a jump of an objective, the model
+ * always promises more. There, twice as many steps suffice. An objective of little weight may still improve when the
+ * merit hardly changes, so no weight x objective may change by more than SETTLED_OBJECTIVE of the merit. METHOD
+ * section 7 has the measurements. */
+/* A step that promises less than SETTLED_SLOW of the one before does not count: such a run converges soon. */
+#define SETTLED_STEPS 5
+#define SETTLED_SLOW 0.25
+#define SETTLED_GAIN 1e-4
+#define SETTLED_OBJECTIVE 1e-3
 #define BEND_WORTH 0.5 /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
 
 /* The numbers of steps were counted on the cases of configs and METHOD. UNNOTICED is the number of operations in about
@@ -207,8 +211,9 @@ static void find_pull(hf_refine_problem *p)
 
 /* Corrects a step for the curvature of the residuals: along a curved valley, a step ends on its flank. With the
  * residuals found there, the same matrices lead back to the floor. This is repeated as long as it at least halves the
- * merit (BEND_WORTH). `before` is merit^2/2 before the step, `gain` its promised decrease. `trial` and the shape in the
- * workspace become the best ones. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED or the status of the last evaluation. */
+ * merit (BEND_WORTH). `before` is merit^2/2 before the step, `gain` its promised decrease. If the best merit is below
+ * that before, `trial` and the shape in the workspace become the best ones. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED
+ * or the status of the last evaluation. */
 static hf_status bend_step(hf_refine_problem *p, double before, double gain)
 {
     size_t size = (size_t)p->n * sizeof(double);
@@ -225,7 +230,9 @@ static hf_status bend_step(hf_refine_problem *p, double before, double gain)
             continue;
         }
         memcpy(p->step.x, p->step_taken, size);
-        return take_step(p);
+        if (merit * merit / 2 < before) return take_step(p);
+        p->result.merit = merit; /* the step fails, so its shape is not needed */
+        return HF_OK;
     }
     return HF_OK;
 }
@@ -313,7 +320,7 @@ static hf_status find_multipliers(hf_refine_problem *p, hf_refine_result *r)
     hf_status status = hf_refine_evaluate(p, p->at);
     if (status == HF_OK) status = hf_refine_linearise(p);
     hf_watch_forget(&p->watch);
-    if (status == HF_OK) status = solve_step(p, DAMPING_OF_MULTIPLIERS, &gain);
+    if (status == HF_OK) status = solve_step(p, DAMPING_NEARLY_NONE, &gain);
     if (status != HF_OK) return status == HF_NO_MEMORY || status == HF_INTERRUPTED ? status : HF_OK;
     learn_pressure(p);
     merit = hf_refine_merit(p, &p->result);
@@ -327,21 +334,49 @@ static hf_status find_multipliers(hf_refine_problem *p, hf_refine_result *r)
     return HF_OK;
 }
 
-/* Returns true if the last SETTLED_STEPS steps changed neither the merit nor an objective noticeably. It is called
- * after each step that is kept. In a flat curved valley, each step promises far more than the next one gains, so the
- * promised gain alone would not end the run. */
-static bool is_settled(hf_refine_problem *p, double merit)
+/* Returns the part of the merit by which a decrease `gain` of merit^2/2 lowers it. */
+static double part_of(double gain, double merit)
+{
+    return merit > 0 ? 1 - sqrt(fmax(0, 1 - 2 * gain / (merit * merit))) : 0;
+}
+
+/* Returns the part of the merit by which the model, nearly without damping, would lower it from the best design, at
+ * which it is linear. Returns NaN if the model has no solution. The next steps keep their bits. */
+static double predict(hf_refine_problem *p, double merit)
+{
+    double gain;
+    size_t size = (size_t)p->step.n * sizeof(int);
+    memcpy(p->side, p->step.side, size);
+    hf_watch_forget(&p->watch);
+    hf_status status = solve_step(p, DAMPING_NEARLY_NONE, &gain);
+    memcpy(p->step.side, p->side, size);
+    return status == HF_OK ? part_of(fmax(0, gain), merit) : (double)NAN;
+}
+
+/* Counts a step: settled_steps becomes the number of steps since one promised more than SETTLED_GAIN of the merit,
+ * since the run last converged fast, or since the merit or an objective last changed noticeably. */
+static void count_settled(hf_refine_problem *p, double merit, double promised_part, bool is_kept)
 {
     const hf_objectives *objectives = p->v.objectives;
-    bool changes = merit < (1 - SETTLED_MERIT) * p->settled_merit;
-    for (int k = 0; objectives && k < objectives->n_objective; k++)
+    bool is_fast = is_kept && promised_part < SETTLED_SLOW * p->promised_before;
+    bool changes = is_fast || promised_part > SETTLED_GAIN || merit < (1 - SETTLED_GAIN) * p->settled_merit;
+    for (int k = 0; is_kept && objectives && k < objectives->n_objective; k++)
         changes |= objectives->objective[k].settings.weight * fabs(p->result.objective[k] - p->settled_objective[k]) >
                    SETTLED_OBJECTIVE * merit;
-    if (!changes) return p->settled_steps >= SETTLED_STEPS;
-    p->settled_merit = merit;
-    memcpy(p->settled_objective, p->result.objective, sizeof p->settled_objective);
+    p->promised_before = is_kept ? promised_part : 0;
+    p->settled_steps++;
+    if (!changes) return;
     p->settled_steps = 0;
-    return false;
+    p->settled_merit = merit;
+    if (is_kept) memcpy(p->settled_objective, p->result.objective, sizeof p->settled_objective);
+}
+
+/* Returns true if the run has settled. In a flat curved valley, each step promises far more than the next one gains,
+ * so the promised gain alone would not end the run. is_kept: the model has changed since the last call. */
+static bool is_settled(hf_refine_problem *p, double merit, bool is_kept)
+{
+    if (p->front || p->settled_steps < SETTLED_STEPS) return false;
+    return p->settled_steps >= 2 * SETTLED_STEPS || (is_kept && predict(p, merit) < SETTLED_GAIN);
 }
 
 /* Takes steps until the run has converged, settled or stalled, or until max_iterations is reached. A point of a front
@@ -358,12 +393,12 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
         p->is_outside = !hf_watch_keeps(&p->watch, p->w);
     }
     if (status == HF_OK && p->is_outside && r->iterations == 0) p->violation = hf_watch_violation(&p->watch, p->w);
-    if (status == HF_OK) HF_TRY(tell_watcher(p, r, max_iterations));
+    /* A resumed run that has ended already keeps its state. The model at its end is newer than that state. */
+    if (status == HF_OK && r->stop == HF_REFINE_MAX_ITERATIONS) HF_TRY(tell_watcher(p, r, max_iterations));
     if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
     while (status == HF_OK && !p->is_outside && r->stop == HF_REFINE_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
         r->iterations++;
-        p->settled_steps++;
         status = try_step(p, p->damping, &gain);
         if (status == HF_OK && !p->front) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
@@ -374,22 +409,27 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
         bool promises = promise > converged * before && 2 * promise > p->noise * p->noise;
         if ((status == HF_OK || status == HF_RATIO_CAP) && !promises) r->stop = HF_REFINE_CONVERGED;
         status = HF_OK;
-        if (after < before) {
+        bool is_kept = after < before;
+        count_settled(p, is_kept ? merit : r->merit, part_of(promise, r->merit), is_kept);
+        if (is_kept) {
             hf_refine_keep(p);
             r->merit = merit;
             learn_pressure(p);
             double share = 2 * (before - after) / gain - 1;
             if (gain > 0) p->damping = fmax(DAMPING_LEAST, p->damping * fmax(0.1, 1 - share * share * share));
             p->growth = 2;
-            if (!p->front && r->stop == HF_REFINE_MAX_ITERATIONS && is_settled(p, merit)) r->stop = HF_REFINE_SETTLED;
             if (r->stop == HF_REFINE_MAX_ITERATIONS) status = hf_refine_linearise(p);
         } else {
             p->damping *= p->growth;
             p->growth *= 2;
             if (p->damping > DAMPING_MOST) r->stop = HF_REFINE_STALLED;
         }
+        if (status == HF_OK && r->stop == HF_REFINE_MAX_ITERATIONS && is_settled(p, r->merit, is_kept))
+            r->stop = HF_REFINE_SETTLED;
         if (status == HF_OK) HF_TRY(tell_watcher(p, r, max_iterations));
     }
+    if (status == HF_OK && !p->front && !p->is_outside)
+        r->predicted_gain = r->stop == HF_REFINE_CONVERGED ? 0 : predict(p, r->merit);
     if (status == HF_NO_MEMORY || status == HF_INTERRUPTED || status == p->told) return status;
     if (status != HF_OK) r->stop = HF_REFINE_STALLED;
     return HF_OK;
@@ -425,6 +465,7 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
     if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (!is_better) {
         r->stop = HF_REFINE_STALLED;
+        r->predicted_gain = NAN;
         forget_multipliers(r);
         HF_TRY(hf_evaluate(p->caller, design, p->w, point, &end));
     }
@@ -468,7 +509,7 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
                            .way = 1,
                            .settled_merit = INFINITY};
     hf_form_result start;
-    *result = (hf_refine_result){.stop = HF_REFINE_MAX_ITERATIONS};
+    *result = (hf_refine_result){.stop = HF_REFINE_MAX_ITERATIONS, .predicted_gain = NAN};
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;

@@ -19,6 +19,9 @@ typedef struct {
      * start is infeasible. */
     double start_merit, merit;
     hf_refine_stop stop;
+    /* Part of the merit by which the linear model, without damping and within the limits, would still lower it. It is 0
+     * if the run has converged, and NaN for a point of a front or if the model has no solution. */
+    double predicted_gain;
     int n_at_lower, n_at_upper; /* design variables at their lower and upper bounds */
     int n_at_limit;             /* cables and attachments at limits of optimize.limits; a ratio counts once */
     bool is_at_cap;             /* the design is at the cap on the boundary tension ratio */

@@ -33,6 +33,7 @@
     X(GROWTH, p->growth, double)                                                                                       \
     X(WAY, p->way, double)                                                                                             \
     X(VIOLATION, p->violation, double)                                                                                 \
+    X(PROMISED_BEFORE, p->promised_before, double)                                                                     \
     X(SETTLED_STEPS, p->settled_steps, int)                                                                            \
     X(SETTLED_MERIT, p->settled_merit, double)
 #define INDEX(name, ...) STATE_##name,
@@ -43,7 +44,7 @@ enum {
     STATE_SCALARS(INDEX) STATE_SETTLED_OBJECTIVE,
     N_SCALAR = STATE_SETTLED_OBJECTIVE + HF_DESIGN_ROWS_MAX
 };
-#define FORMAT 2
+#define FORMAT 3
 
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
 {

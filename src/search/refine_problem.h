@@ -30,6 +30,7 @@
     X(double, objective_rate, to->front ? n *(size_t)to->v.objectives->n_objective : 0,                                \
       "[n_objective][n] gradients of objectives without corners, for a point of a front")                              \
     X(double, constraint_rate, n *hf_refine_n_constraint(to), "[n_constraint][n] rates of the constraints")            \
+    X(int, side, n + 1, "sides of the bounds that held the last step, while the remaining gain is predicted")          \
     X(double, state, to->front ? 0 : to->n_state, "the state of the run for hf_refine_watcher")
 
 /* The tensions T and the force densities T/l of a shape describe the same shape. But the shape depends far more
@@ -60,8 +61,9 @@ typedef struct {
     double damping, growth;              /* damping of the next step, and its factor if that step fails */
     double way, violation;               /* outside the limits: part of the way for the next step, and the violation */
     double best_psi_m;                   /* psi of the best design */
-    int settled_steps;                   /* steps since the merit or an objective last changed noticeably */
-    double settled_merit, settled_objective[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that change */
+    double promised_before;              /* part of the merit that the last step promised; 0 if it failed */
+    int settled_steps;                   /* steps since one promised much or changed the merit or an objective */
+    double settled_merit, settled_objective[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that step */
     size_t n_state;
     double noise; /* part of the merit that the tolerance of the form-finding leaves open */
     void *block;

@@ -169,6 +169,32 @@ def improve(net, density, low, high, cap, is_density, x):
     return minimise(at, psi2, density, bounds, limits, limit_rates, 300)
 
 
+def predict(net, density, low, high, cap, is_density, x):
+    """Returns the part of psi by which the linear model of the shape at x lowers it, within the limits to first
+    order."""
+    shape, T, move, rate = net.solve(density, x)
+    f, J = (shape - net.target_position)[net.inner].ravel(), move[net.inner].reshape(-1, len(density))
+    scale, unit = np.linalg.norm(f), density
+    f, J, rate, n = f / scale, J * unit / scale, rate * unit, len(density)
+    ones, none = np.ones((n, 1)), np.zeros((n, 1))
+    rows = [np.hstack([rate, -ones]), np.hstack([-rate, cap * ones])]
+    left = [T, -T]
+    if is_density:
+        length = net.length[net.boundary] * unit
+        rows += [np.hstack([np.diag(length), none]), np.hstack([-np.diag(length), none])]
+        left += [density * net.length[net.boundary] - low, high - density * net.length[net.boundary]]
+    else:
+        rows += [np.hstack([rate, none]), np.hstack([-rate, none])]
+        left += [T - low, high - T]
+    A, b = np.vstack(rows), np.concatenate(left)
+    found = scipy.optimize.minimize(
+        lambda v: (100 * np.sum((f + J @ v[:-1])**2), np.append(200 * J.T @ (f + J @ v[:-1]), 0)),
+        np.append(np.zeros(n), T.min()), jac=True, method="SLSQP",
+        constraints={"type": "ineq", "fun": lambda v: A @ v + b, "jac": lambda v: A},
+        options={"maxiter": 1000, "ftol": 1e-14})
+    return 1 - np.linalg.norm(f + J @ found.x[:-1])
+
+
 def compare(program, folder, random):
     net = Net(random)
     is_density, reach, cap = bool(random.integers(2)), float(random.uniform(3, 15)), float(random.uniform(1.1, 1.8))
@@ -179,10 +205,14 @@ def compare(program, folder, random):
               f"limits: [{{figure: ratio, set: boundary, bounds: [1, {cap}]}}]" if by_rows
               else f"rule: {rule}, range_N: {reach}, boundary_ratio_cap: {cap}")
     result = os.path.join(folder, "r.h5")
-    run = subprocess.run([program, "run", os.path.join(folder, "case.yaml"), "-o", result, "--restart", "--quiet"],
-                         capture_output=True, text=True, check=False)
-    if run.returncode != 0:
+    argv = [program, "run", os.path.join(folder, "case.yaml"), "-o", result, "--restart", "--quiet"]
+    n_step = int(random.integers(1, 4))
+    if subprocess.run([*argv, "--set", f"optimize.refine_steps={n_step}"], capture_output=True, check=False).returncode:
         return None  # not every random net starts below its cap: the caller draws another
+    with h5py.File(result) as file:
+        short = dict(file["refine"].attrs)
+        begun = file["refine/q_N_per_m"][()][net.boundary], file["refine/position_m"][()]
+    subprocess.run(argv, capture_output=True, check=True)
     with h5py.File(result) as file:
         design, refined = file["refine/design"][()], dict(file["refine"].attrs)
         density, position = file["refine/q_N_per_m"][()][net.boundary], file["refine/position_m"][()]
@@ -190,17 +220,23 @@ def compare(program, folder, random):
     shape, T, _, _ = net.solve(density, position)
     psi, own = float(refined["psi_m"]), net.psi(shape)
     low, high = np.maximum(first - reach, 0.1), first + reach
+    predicted, own_prediction = float(short["predicted_gain"]), predict(net, begun[0], low, high, cap, is_density,
+                                                                        begun[1])
     gain = (psi - improve(net, density, low, high, cap, is_density, shape)) / psi
     from_base = improve(net, base, low, high, cap, is_density, net.target_position) / psi - 1
     start = net.psi(net.solve(base, net.target_position)[0])
     given = "rows of" if by_rows else "rule"
     print(f"{len(T)} pretensions, {given} {rule}, cap {cap:.4f}: psi {1e3 * start:.6f} -> {1e3 * psi:.6f} mm in "
           f"{refined['steps']} steps, ratio {T.max() / T.min():.6f}; SLSQP gains {gain:.1e} "
-          f"from there, ends {from_base:+.1e} from the same start")
+          f"from there, ends {from_base:+.1e} from the same start; "
+          f"after {n_step} steps the model predicts {predicted:.6e} less, recomputed {own_prediction:.6e}")
     net_is = f"{len(T)} pretensions, {given} {rule}"
     figures.worst(abs(own - psi) / psi, 1e-9, f"{net_is}: psi of the optimum, in parts of it")
     figures.worst(max(gain, 0), GAIN_MOST, f"{net_is}: what SLSQP gains there, in parts of psi")
+    is_predicted = short["algorithm_stop"] != 2 or abs(predicted - own_prediction) < 1e-6
+    figures.worst(abs(predicted - own_prediction), 1e-6, f"{net_is}: gain that the model predicts, in parts of psi")
     wrong = [what for what, is_wrong in [
+        ("another prediction", not is_predicted),
         ("psi differs", abs(own - psi) > 1e-9 * psi), ("not converged", refined["algorithm_stop"] not in ENDED),
         ("above the cap", T.max() / T.min() > cap * (1 + 1e-9)), ("SLSQP gains", gain > GAIN_MOST),
         ("out of bounds", (design < low - 1e-9).any() or (design > high + 1e-9).any())] if is_wrong]

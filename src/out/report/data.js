@@ -98,7 +98,7 @@ const STOP = {
   generations: "the generation limit was reached",
   stagnation: "later generations gained nothing",
   all_infeasible: "a generation had no feasible design",
-  settled: "ten steps gained less than 1e-6",
+  settled: "five steps gained less than 0.01 %",
   running: "interrupted",
   stalled: "shorter steps gained nothing",
   taken: "taken from a front",
