@@ -234,7 +234,7 @@ static void print_optimisation(const hf_check *c, FILE *f)
     print_variables(c, f);
     print_wishes(c, f);
     if (c->refines)
-        fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d iterations, %s\n", hf_rule_word[o->rule],
+        fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d steps, %s\n", hf_rule_word[o->rule],
                 o->refine_steps,
                 o->n_front                    ? "for each point"
                 : c->is_refine_result         ? "the result"
@@ -338,9 +338,13 @@ static void print_tolerance_time(const hf_check *c, FILE *f)
 
 static void print_refine_time(const hf_check *c, FILE *f)
 {
-    fprintf(f, "                Levenberg-Marquardt: %s%s an iteration%s; at most about %s, mostly far less\n",
+    const hf_optimize_settings *o = &c->problem.settings.optimize;
+    char points[32] = "";
+    if (o->n_front) snprintf(points, sizeof points, " for each of %d points", o->front_points);
+    fprintf(f, "                Levenberg-Marquardt: %s%s a step%s; about %s for %s%d step%s%s (at most %d)\n",
             c->is_step_tried ? "" : "some ", hf_print_duration(c->step_s).text,
-            c->is_step_tried ? "" : ", counted and not tried", hf_print_duration(c->refine_s).text);
+            c->is_step_tried ? "" : ", counted and not tried", hf_print_duration(c->refine_s).text,
+            c->is_refine_tried ? "" : "some ", c->n_step, c->n_step == 1 ? "" : "s", points, o->refine_steps);
     if (c->advises_fewer)
         fprintf(f,
                 "                %d variables: its time grows with their cube, its memory with their square; fewer of "

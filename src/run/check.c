@@ -1,6 +1,6 @@
 /* Finds what a run would do. check.h describes the interface.
  *
- *     case -> problem -> counts, memory -> short trials: form-finding, as-built samples, first generation, two steps of
+ *     case -> problem -> counts, memory -> short trials: form-finding, as-built samples, first generation,
  *     Levenberg-Marquardt -> times
  *
  * Contents: counts, memory, times, a case, the points of a study. */
@@ -18,8 +18,14 @@
 
 #include <math.h>
 
-#define OPERATIONS_PER_S 2e9 /* speed of one core in a step of the refinement, see hf_refine_operations */
-#define LONG_S 3600.0        /* above this time, or above LARGE_BYTES, advice is given */
+#define OPERATIONS_PER_S 8e9 /* speed of one core in a step of the refinement, see hf_refine_operations */
+/* Expected steps of a refinement, counted on the cases of configs and of METHOD section 7. If one of the first
+ * TRIAL_STEPS steps fails, the way to the optimum is curved, or an objective has a corner on it. */
+#define STEPS_SMOOTH 8
+#define STEPS_ROUGH 30
+#define TRIAL_STEPS 3
+#define STEP_MOST_S 3.0 /* counted time of a step above which no step is tried */
+#define LONG_S 3600.0   /* above this time, or above LARGE_BYTES, advice is given */
 #define LARGE_BYTES 2e9
 #define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */
 /* Time for making the nets of the points of a study; for one with more than MANY points, only MAKING_FEW_S. */
@@ -226,23 +232,49 @@ static hf_status time_search(hf_check *c, const hf_evaluator *v, const hf_popula
     return status;
 }
 
-/* Runs two steps of Levenberg-Marquardt from the initial design to find the time of one. If counted operations predict
- * more time than that of a trial, nothing is run, and the prediction is the time. */
+/* The steps of a trial of Levenberg-Marquardt. */
+typedef struct {
+    double begin_s, merit; /* begin_s: when the first step began */
+    int n_failed;          /* steps that did not lower the merit */
+} step_trial;
+
+/* Ends a trial that has taken its time. hf_refine_watcher describes the arguments. */
+static hf_status watch_step(void *context, const hf_refine_progress *now)
+{
+    step_trial *t = context;
+    if (now->iterations == 0) t->begin_s = hf_clock_s();
+    if (now->iterations > 0 && now->iterations <= TRIAL_STEPS) t->n_failed += !(now->merit < t->merit);
+    t->merit = now->merit;
+    return !now->is_last && now->iterations >= TRIAL_STEPS && hf_clock_s() > t->begin_s + TRIAL_S ? HF_INTERRUPTED
+                                                                                                  : HF_OK;
+}
+
+/* Runs Levenberg-Marquardt from the initial design for about the time of a trial. If it has not ended then, the number
+ * of its steps follows from whether the first ones failed. If counted operations predict that a step takes long,
+ * nothing is run. */
 static hf_status time_refine(hf_check *c, const hf_evaluator *v, const hf_population *ga)
 {
     hf_problem *p = &c->problem;
     const hf_optimize_settings *o = &p->settings.optimize;
     hf_refine_result r;
     double begin_s = hf_clock_s(), step_s = hf_refine_operations(v) / OPERATIONS_PER_S;
-    c->is_step_tried = step_s <= TRIAL_S;
+    step_trial t = {.begin_s = begin_s};
+    const hf_refine_watcher watcher = {.after = watch_step, .context = &t};
+    c->n_step = STEPS_SMOOTH;
+    c->is_step_tried = step_s <= STEP_MOST_S;
     if (c->is_step_tried) {
-        hf_status status = hf_refine_run(v, ga->lower, ga->upper, 2, NULL, NULL, p->initial, &p->workspace, &r);
+        hf_status status =
+            hf_refine_run(v, ga->lower, ga->upper, o->refine_steps, NULL, &watcher, p->initial, &p->workspace, &r);
         if (status == HF_NO_MEMORY) return status;
-        if (status != HF_OK || r.iterations == 0) return HF_OK;
-        step_s = (hf_clock_s() - begin_s) / r.iterations;
+        if ((status != HF_OK && status != HF_INTERRUPTED) || r.iterations == 0) return HF_OK;
+        c->is_refine_tried = status == HF_OK && !c->evolves && !o->n_front;
+        step_s = (hf_clock_s() - t.begin_s) / r.iterations;
+        int expected = t.n_failed ? STEPS_ROUGH : STEPS_SMOOTH;
+        c->n_step = status == HF_OK || r.iterations > expected ? r.iterations : expected;
     }
+    if (c->n_step > o->refine_steps) c->n_step = o->refine_steps;
     c->step_s = step_s;
-    c->refine_s = step_s * ((double)o->refine_steps * (o->n_front > 0 ? o->front_points : 1));
+    c->refine_s = t.begin_s - begin_s + step_s * ((double)c->n_step * (o->n_front > 0 ? o->front_points : 1));
     c->advises_fewer = c->refine_s > LONG_S || c->memory.refine > LARGE_BYTES;
     c->at_most_s += c->refine_s;
     return HF_OK;

@@ -65,9 +65,13 @@ typedef struct {
     hf_solver solver;             /* of the designs of a generation */
     double design_s, search_s;    /* times of a design of the first generation; maximum of the whole search */
     bool is_step_tried;           /* false: step_s follows from counted operations */
-    double step_s, refine_s;      /* times of an iteration of Levenberg-Marquardt; maximum of all of them */
+    int n_step;                   /* steps of Levenberg-Marquardt (for each point of a front) that are expected */
+    bool is_refine_tried;         /* true: the trial took all n_step steps, from the initial design */
+    double step_s, refine_s;      /* times of a step of Levenberg-Marquardt, and of all expected steps */
     bool advises_fewer;           /* the refinement takes long or much memory: fewer variables would be better */
-    double at_most_s;             /* maximum of a run, without the as-built nets of a section `tolerance` */
+    /* Time of a run, without the as-built nets of a section `tolerance`: the maximum of the search, and the expected
+     * time of the refinement. */
+    double at_most_s;
 } hf_check;
 
 /* Loads the case and finds what does not need a trial. *check must be zero on entry. Returns HF_OK; HF_BAD_CASE with

@@ -52,7 +52,7 @@ typedef struct {
  * variables, the rule must not be `seeded`, and no objective may be a quantile. */
 bool hf_refine_applies(const hf_evaluator *evaluator);
 
-/* Returns the counted floating-point operations of one step. A core performs about 2e9 of them per second. */
+/* Returns the counted floating-point operations of one step. A core performs some 8e9 of them per second. */
 double hf_refine_operations(const hf_evaluator *evaluator);
 
 /* Returns true if a run from a design of the genetic algorithm is cheap. It then takes at most a tenth of the

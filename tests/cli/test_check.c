@@ -299,10 +299,11 @@ START_TEST(check_of_many_variables_is_quick)
                               "optimize:\n  method: lm\n"
                               "  variables: [{set: all, vary: force_density, range: 50 %}]\n");
     HIFDM(0, "check", c);
-    OUT(" an iteration; at most about ");
+    OUT(" a step; about ");
+    OUT(" for 1 step (at most 200)");
     ck_assert(!strstr(said.out, "counted and not tried") && !strstr(said.out, "fewer of them by"));
     HIFDM(0, "check", c, "--set", "scene.paraboloid.rings=25");
-    OUT(" an iteration, counted and not tried; at most about ");
+    OUT(" a step, counted and not tried; about ");
     OUT("12901 variables: its time grows with their cube, its memory with their square; fewer of them by link: "
         "symmetry");
 }

@@ -220,7 +220,7 @@ START_TEST(a_check_says_what_will_be_followed)
     HIFDM(0, "check", FRONT);
     OUT("                front of objective_0_psi and objective_1_ratio_boundary: 7 points, each by "
         "Levenberg-Marquardt\n");
-    OUT("                Levenberg-Marquardt: rule force_density, at most 200 iterations, for each point\n");
+    OUT("                Levenberg-Marquardt: rule force_density, at most 200 steps, for each point\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: ratio, set: edges}]");
     ERR("error: --set optimize.front.1.set: this net has no cable set 'edges'; did you mean 'edge'?\n");
     HIFDM(2, "check", FRONT, "--set", "optimize.front=[{figure: psi}, {figure: deflection}]");

@@ -34,6 +34,7 @@ MASKS = [
     (re.compile(r'("version": )"[^"]*"'), r'\1"VERSION"'),
     (re.compile(r"\b\d+ h \d+ min\b|\b\d+ min \d+ s\b"), "TIME"),
     (re.compile(r"\b\d+(?:\.\d+)? (?:ns|us|ms|s|min|h|d)\b(?! at| each)"), "TIME"),
+    (re.compile(r"(TIME a step; about TIME) for (?:some )?\d+ steps?"), r"\1 for STEPS"),
     (re.compile(r"ended early: (?:some|with errors as they are at most about) TIME"), "ended early: TIME"),
     (re.compile(r'(condition"?:? )[\d.e+]+'), r"\1CONDITION"),
     (re.compile(r"\b\d+(?:\.\d+)? (?:B|kB|MB|GB)\b"), "BYTES"),
