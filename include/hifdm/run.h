@@ -95,6 +95,9 @@ typedef struct {
     /* If tasks > 0, the run computes only the samples of this task, 0 to tasks - 1, without a result file. If task is
      * -1, the run combines the samples of all tasks. */
     int task, tasks;
+    /* If more_steps > 0, the run continues the refinement of the finished result by this number of steps. It then
+     * computes the later stages again. The finished result stays unchanged until it is replaced. */
+    int more_steps;
 } hf_run_part;
 
 /* Describes a run for the function hf_run_case. All pointers are borrowed until hf_run_case returns. */

@@ -53,7 +53,8 @@
  *                n_evaluation_infeasible, n_evaluation_above_cap of all generations
  *   /refine      shape of the refinement, or of the selected point of a front, as in /search; attributes:
  *                algorithm ("lm"), HF_SUMMARY_REFINE_LIST, HF_RESULT_LIST, wall_s; with a truss coupling_...
- *   /refine_state  of a run that was interrupted in its refinement: time and state, opaque numbers
+ *   /refine_state  state of Levenberg-Marquardt after its last step, from which it can continue: opaque numbers;
+ *                attribute wall_s
  *   /surface     with a section surface: attributes kind, focal_length_m, strip_width_m, mesh_tension_N_per_m;
  *                frequency_Hz [f]
  *   /surface/STAGE  STAGE is form, search or refine; attributes: HF_SURFACE_LIST, HF_SURFACE_FIT_LIST as fit_...;
@@ -140,6 +141,12 @@ hf_status hf_store_create(const char *path, bool restart, const hf_case *setting
  * file is finished. If the function fails, *store is NULL and the file is unchanged. */
 hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages);
 
+/* Opens the finished file at `path` to continue its refinement. The function omits the results that follow the
+ * refinement. The visible file stays unchanged until hf_store_settle replaces it, and hf_store_publish has no effect.
+ * Returns HF_OK, HF_IO or HF_NO_MEMORY. Returns HF_EXISTS if the file contains no state of Levenberg-Marquardt. If the
+ * function fails, *store is NULL. */
+hf_status hf_store_continue(const char *path, hf_store **store, hf_messages *messages);
+
 /* Adds the generations of the journal to the unfinished file at `path` and reads the summary of the file. The function
  * computes no new results. If the file is finished, the function leaves the file unchanged and adds a warning. Returns
  * the same status codes as hf_store_resume. If this build proposes other designs than the build that wrote the journal,
@@ -186,7 +193,7 @@ hf_status hf_store_restore_initial(hf_store *store, int n_variable, double *init
 hf_status hf_store_restore(hf_store *store, hf_optimiser *optimiser, hf_summary *summary, hf_messages *messages);
 
 /* Copies the state of Levenberg-Marquardt in the array state [n] and the elapsed time wall_s in s. Later publications
- * include this state. A finished file does not contain the state of Levenberg-Marquardt. */
+ * and the finished file include this state. */
 hf_status hf_store_refine(hf_store *store, double wall_s, size_t n, const double *state, hf_messages *messages);
 /* Reads the state of Levenberg-Marquardt in a resumed store. The function sets *wall_s to the elapsed time in s, *state
  * to the state, and *n to the size of the state. If the store contains no state of Levenberg-Marquardt, *n is 0. The

@@ -29,22 +29,34 @@ static hf_status judge_strictly(const hf_summary *s, hf_messages *messages)
     return hf_error(messages, HF_REQUIREMENT_FAILED, "the result fails %d of %d requirements", n, s->n_requirement);
 }
 
+static hf_status check_more(const hf_options *o, hf_messages *messages)
+{
+    if (o->more && (o->force || o->point))
+        return hf_error(messages, HF_BAD_USAGE,
+                        "the option '--more' continues a finished result, so it cannot be combined with '%s'",
+                        o->point ? "--point" : "--restart");
+    return HF_OK;
+}
+
 static hf_status run_case(const hf_options *o, FILE *file, hf_messages *messages)
 {
     static hf_summary summary;
     char output[HF_OUTPUT_SIZE];
     bool of_tolerance = o->command == &hf_cmd_tolerance;
     HF_TRY(check_tasks(o, messages));
+    HF_TRY(check_more(o, messages));
     hf_progress progress = hf_progress_on(stderr, o->quiet ? HF_PROGRESS_NONE : o->progress);
-    hf_run_request request = {
-        .input = {.case_path = o->file,
-                  .set = o->set,
-                  .n_set = o->n_set,
-                  .seed = o->has_seed ? &o->seed : NULL,
-                  .point = o->point},
-        .output = {.path = o->output, .restart = o->force, .argc = o->argc, .argv = o->argv},
-        .control = {o->threads, hf_signals_watch(), hf_progress_show, &progress},
-        .part = {.of_tolerance = of_tolerance, .task = o->task, .tasks = of_tolerance ? o->tasks : 0}};
+    hf_run_request request = {.input = {.case_path = o->file,
+                                        .set = o->set,
+                                        .n_set = o->n_set,
+                                        .seed = o->has_seed ? &o->seed : NULL,
+                                        .point = o->point},
+                              .output = {.path = o->output, .restart = o->force, .argc = o->argc, .argv = o->argv},
+                              .control = {o->threads, hf_signals_watch(), hf_progress_show, &progress},
+                              .part = {.of_tolerance = of_tolerance,
+                                       .task = o->task,
+                                       .tasks = of_tolerance ? o->tasks : 0,
+                                       .more_steps = o->more}};
     hf_status status = hf_run_case(&request, &summary, output, messages);
     hf_progress_end(&progress);
     const char *path = *output ? output : NULL;
@@ -67,10 +79,14 @@ const hf_command hf_cmd_run = {
         "also computes samples of the as-built net. The run stores every generation. To resume a run that was killed "
         "or interrupted, run the same command again. hifdm keeps a finished result unless you use the --restart "
         "option.\nFor a case with the list optimize.front, the --point option uses a point of an existing Pareto front "
-        "instead of a search. The result contains the shape, the cut list and the as-built net of the selected point.",
+        "instead of a search. The result contains the shape, the cut list and the as-built net of the selected "
+        "point.\nThe "
+        "--more option continues a refinement that ended before it converged. hifdm then also computes the load cases "
+        "and the samples again. The earlier result remains until the new result is finished.",
     .examples = "hifdm run configs/chen2022.yaml\n"
                 "hifdm run case.yaml --set form.pretension_N=12 --seed 7 -o twelve.h5\n"
-                "hifdm run case.yaml --point front.h5:7 -o point7.h5",
+                "hifdm run case.yaml --point front.h5:7 -o point7.h5\n"
+                "hifdm run case.yaml --more 50",
     .uses_threads = true,
     .run = run_case,
 };

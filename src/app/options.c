@@ -14,6 +14,7 @@
 
 #define THREADS_MAX 4096  /* maximum of --threads; a larger number is probably a typing error */
 #define TASKS_MAX 1000000 /* maximum of --tasks */
+#define STEPS_MAX 100000  /* maximum of --more, as of optimize.refine_steps */
 #define RENAME_IT "rename it, because version 0.4 refuses the old name"
 
 /* ---- reading a value ---- */
@@ -156,6 +157,8 @@ static const hf_option option_table[] = {
     {"--point", NULL, "FILE:N",
      "take point N of the front in the result FILE for the design; the case and --set are those of its run",
      "run tolerance", read_text, AT(point), 0},
+    {"--more", NULL, "N", "continue the refinement of the finished result FILE by N steps", "run", read_count, AT(more),
+     STEPS_MAX},
     {"--designs", NULL, "FILE",
      "CSV: a column for each variable (without optimize.variables: adjustable cable, N), optionally id", "evaluate",
      read_text, AT(designs), 0},

@@ -32,6 +32,7 @@ struct hf_options {
     int n_set;
     const char *folder; /* argument of --dir */
     unsigned retry;     /* --retry as bits 1 << hf_point_state; 0: not given */
+    int more;           /* argument of --more; 0: not given */
     int task, tasks;    /* arguments of --task and --tasks; -1 and 0: not given */
     int threads;        /* --threads or SLURM_CPUS_PER_TASK; 0: all cores */
     bool has_seed;

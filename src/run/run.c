@@ -1,7 +1,7 @@
 /* Runs a whole case, as `hifdm run` does.
  *
  *     prepare       case, net, truss, model (problem_parts.c); a point of an earlier front
- *     open_store    the result file is created, resumed or found finished
+ *     open_store    the result file is created, resumed, found finished or continued (--more)
  *     run_stages    form-finding                                  (stages_form.c)
  *                   search: generations, each stored              (stages_search.c)
  *                   refinement, or a point of an earlier front    (stages_refine.c)
@@ -65,6 +65,39 @@ static hf_status prepare(hf_run *r, hf_summary *s, hf_messages *messages)
     return HF_OK;
 }
 
+/* Opens the finished result whose refinement the request continues. If that refinement has converged or stalled, no
+ * store is opened and *state stays HF_STORE_FINISHED. */
+static hf_status open_to_continue(hf_run *r, hf_store_state *state, hf_messages *messages)
+{
+    hf_summary *before = calloc(1, sizeof *before);
+    if (!before) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", r->output);
+    hf_status status = *state == HF_STORE_FINISHED ? hf_store_read_finished(r->output, before, messages) : HF_OK;
+    const hf_refine_summary refine = before->refine;
+    bool has_refine = before->stage[HF_STAGE_REFINE].exists && refine.algorithm_stop != HF_REFINE_TAKEN;
+    hf_summary_free(before);
+    free(before);
+    HF_TRY(status);
+    if (*state != HF_STORE_FINISHED)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: the option --more continues a finished result, but this file %s. Run the command without "
+                        "--more first",
+                        r->output, *state == HF_STORE_UNFINISHED ? "is unfinished" : "does not exist");
+    if (!has_refine)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: this result has no refinement that --more could continue. Set optimize.method to lm or "
+                        "ga+lm",
+                        r->output);
+    r->steps_before = refine.steps;
+    if (refine.algorithm_stop == HF_REFINE_CONVERGED || refine.algorithm_stop == HF_REFINE_STALLED) {
+        hf_warning(messages, "%s: --more changes nothing, because the refinement has %s", r->output,
+                   refine.algorithm_stop == HF_REFINE_CONVERGED ? "converged" : "stalled");
+        return HF_OK;
+    }
+    *state = HF_STORE_UNFINISHED;
+    HF_TRY(hf_lapack_load(messages));
+    return hf_store_continue(r->output, &r->store, messages);
+}
+
 /* Sets *state and opens the store. No store is opened for a finished result, nor for one task of several, which has
  * none. The path of the result is the given one, or else the name of the case with .h5 in the current folder. */
 static hf_status open_store(hf_run *r, hf_store_state *state, hf_messages *messages)
@@ -79,6 +112,7 @@ static hf_status open_store(hf_run *r, hf_store_state *state, hf_messages *messa
     HF_TRY(
         hf_problem_spare_inputs(&r->problem, settings->taken.point ? settings->taken.path : NULL, r->output, messages));
     if (!to->restart) HF_TRY(hf_store_look(r->output, settings, scene, truss, state, messages));
+    if (q->part.more_steps) return open_to_continue(r, state, messages);
     if (*state == HF_STORE_FINISHED) return HF_OK;
     HF_TRY(hf_tolerance_stage_look(q, &r->problem, r->output, messages));
     if (hf_tolerance_stage_is_task(q)) return HF_OK;
@@ -93,8 +127,10 @@ static hf_status repeat_finished(const hf_run *r, hf_summary *s, hf_messages *me
 {
     HF_TRY(hf_store_read_finished(r->output, s, messages));
     if (s->tolerance) hf_tolerance_stage_end(r->request, r->output);
-    hf_warning(messages, "%s: this file is the finished result of this case. Use --restart to compute the result again",
-               r->output);
+    if (!r->request->part.more_steps)
+        hf_warning(messages,
+                   "%s: this file is the finished result of this case. Use --restart to compute the result again",
+                   r->output);
     for (const char *line = s->warnings; *line; line += strcspn(line, "\n"), line += *line == '\n')
         if (!strncmp(line, "error: ", 7)) hf_error(messages, s->status, "%.*s", (int)strcspn(line + 7, "\n"), line + 7);
     return s->status;
@@ -112,9 +148,11 @@ static hf_status end_unfinished(hf_run *r, const hf_summary *s, hf_status status
     if (r->may_publish) kept = hf_store_publish(r->store, s, true, r->has_design ? NULL : messages);
     if (kept != HF_OK && !r->has_design) return kept;
     if (status == HF_INTERRUPTED && (r->store || hf_tolerance_stage_is_task(r->request)))
-        hf_error(messages, status, "%s: the run was interrupted%s. Run the same command again to resume", r->output,
-                 r->stopped_at);
-    if (status != HF_INTERRUPTED && r->store && kept == HF_OK && !r->request->part.of_sweep)
+        hf_error(messages, status, "%s: the run was interrupted%s. %s", r->output, r->stopped_at,
+                 r->request->part.more_steps ? "The earlier result is unchanged"
+                                             : "Run the same command again to resume");
+    if (status != HF_INTERRUPTED && r->store && kept == HF_OK && !r->request->part.of_sweep &&
+        !r->request->part.more_steps)
         hf_warning(messages, "%s: this result is unfinished. Run the same command again to resume", r->output);
     return status;
 }

@@ -40,6 +40,7 @@ typedef struct {
     double *design;                      /* [n_variable] best design so far, of the problem or of the population */
     hf_front front;                      /* front of optimize.front */
     hf_taken_point taken;                /* point taken instead of a search */
+    int steps_before;                    /* steps of the finished refinement that the run continues */
     char stopped_at[HF_STOPPED_AT_SIZE]; /* how far an interrupted stage came, for the message */
 } hf_run;
 

@@ -118,6 +118,7 @@ static void warn_of_steps(const steps *q, const hf_refine_result *r)
     int n = r->iterations - q->first_iteration < LATELY ? r->iterations - q->first_iteration : LATELY;
     double before = q->merit[(r->iterations - n) % (LATELY + 1)];
     double gain = n > 0 && before > 0 ? 1 - q->now.merit / before : 0;
+    const hf_run_request *request = q->run->request;
     const char *what = has_merit(q) ? "the merit" : "psi";
     char lately[96] = "", predicted[96] = "";
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
@@ -126,7 +127,9 @@ static void warn_of_steps(const steps *q, const hf_refine_result *r)
         snprintf(predicted, sizeof predicted, "; the model predicts at most %.2g %% less", 100 * r->predicted_gain);
     if (r->predicted_gain > WORTH && gain > WORTH)
         hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps. Better designs are near%s%s. %s",
-                   r->iterations, lately, predicted, "Raise optimize.refine_steps");
+                   r->iterations, lately, predicted,
+                   request->part.of_sweep || request->output.no_file ? "Raise optimize.refine_steps"
+                                                                     : "Continue with the option --more N");
     else
         hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps%s%s", r->iterations, lately,
                    predicted);
@@ -150,11 +153,12 @@ static hf_status find_steps(hf_run *r, hf_summary *s, hf_refine_result *outcome,
     const hf_optimize_settings *settings = &p->settings.optimize;
     const hf_population *bounds = &r->optimiser.population;
     steps q = {.run = r, .summary = s, .messages = messages, .begin_s = hf_clock_s()};
-    hf_refine_watcher watcher = {.after = between_steps, .context = &q};
+    int n_more = r->request->part.more_steps, most = n_more ? r->steps_before + n_more : settings->refine_steps;
+    hf_refine_watcher watcher = {.after = between_steps, .context = &q, .is_more = n_more > 0};
     hf_run_report(&r->request->control, (hf_run_progress){.phase = HF_RUN_REFINE, .best_psi_m = NAN, .merit = NAN});
     HF_TRY(hf_store_restore_refine(r->store, &q.earlier_s, &watcher.n_state, &watcher.state, messages));
-    hf_status status = hf_refine_run(&p->evaluator, bounds->lower, bounds->upper, settings->refine_steps, NULL,
-                                     &watcher, r->design, &p->workspace, outcome);
+    hf_status status = hf_refine_run(&p->evaluator, bounds->lower, bounds->upper, most, NULL, &watcher, r->design,
+                                     &p->workspace, outcome);
     s->stage[HF_STAGE_REFINE].wall_s = q.earlier_s + hf_clock_s() - q.begin_s;
     if (hf_run_must_stop(r)) {
         note_stop(&q, r->stopped_at);

@@ -372,10 +372,11 @@ static void count_settled(hf_refine_problem *p, double merit, double promised_pa
 }
 
 /* Returns true if the run has settled. In a flat curved valley, each step promises far more than the next one gains,
- * so the promised gain alone would not end the run. is_kept: the model has changed since the last call. */
+ * so the promised gain alone would not end the run. A run that continues a finished one never settles. is_kept: the
+ * model has changed since the last call. */
 static bool is_settled(hf_refine_problem *p, double merit, bool is_kept)
 {
-    if (p->front || p->settled_steps < SETTLED_STEPS) return false;
+    if (p->front || (p->watcher && p->watcher->is_more) || p->settled_steps < SETTLED_STEPS) return false;
     return p->settled_steps >= 2 * SETTLED_STEPS || (is_kept && predict(p, merit) < SETTLED_GAIN);
 }
 

@@ -46,6 +46,7 @@ typedef struct {
     void *context;
     size_t n_state;
     const double *state; /* state of an earlier run with the same arguments, ignored if it does not fit; NULL: none */
+    bool is_more;        /* continue the state of a run that has settled; this run ends only for the other reasons */
 } hf_refine_watcher;
 
 /* Returns true if designs of this evaluator can be refined. The net must have a Newton matrix, there must be design

@@ -284,6 +284,7 @@ bool hf_refine_resume(hf_refine_problem *p, size_t n_state, const double *s, hf_
     if (!is_state(p, n_state, s)) return false;
     STATE_SCALARS(READ)
     p->evaluations--; /* the best design is evaluated once more */
+    if (p->watcher->is_more && r->stop == HF_REFINE_SETTLED) r->stop = HF_REFINE_MAX_ITERATIONS;
     memcpy(p->settled_objective, s + STATE_SETTLED_OBJECTIVE, sizeof p->settled_objective);
     memcpy(p->at, array, n * sizeof(double));
     memcpy(p->scale, array + n, n * sizeof(double));

@@ -15,7 +15,6 @@ static const struct {
                    {"/search/population", "/ga", "/ga"},
                    {"/search", "/ga/best", "/ga"},
                    {"/variable", "/ga", "/ga"},
-                   {"/refine_state", "/polish_state", NULL},
                    {"/refine", "/polish", "/polish"},
                    {"/surface/search", "/surface/optimize", NULL},
                    {"/surface/refine", "/surface/polish", NULL},
@@ -288,6 +287,11 @@ static void note_object(void *context, const char *path, hid_t object, H5I_type_
     l->object[l->n++].path = copy;
 }
 
+static void note_link(void *context, const char *path, hid_t object, H5I_type_t type)
+{
+    if (type == H5I_BADID) note_object(context, path, object, type);
+}
+
 static void link_to(hf_hdf5 *io, const char *now, const char *then)
 {
     if (io->status == HF_OK && H5Lexists(io->file, then, H5P_DEFAULT) == 0 &&
@@ -371,6 +375,25 @@ void hf_renamed_link(hf_hdf5 *io, bool has_rows)
         else
             link_data_set(l, l->object[i].path);
         free(l->object[i].path);
+    }
+    free(l);
+}
+
+void hf_renamed_unlink(hf_hdf5 *io)
+{
+    linking *l = hf_hdf5_take(io, 1, sizeof *l);
+    if (!l) return;
+    l->io = io;
+    hf_hdf5_walk(io, note_link, l);
+    for (int i = 0; i < l->n; i++) {
+        if (io->status == HF_OK && H5Ldelete(io->file, l->object[i].path, H5P_DEFAULT) < 0)
+            hf_hdf5_fail(io, "write", io->file, l->object[i].path);
+        free(l->object[i].path);
+    }
+    for (int i = 0; i < HF_HDF5_COUNT(group_table); i++) {
+        const char *group = group_table[i].attributes;
+        if (group && hf_hdf5_has(io, io->file, group) && H5Ldelete(io->file, group, H5P_DEFAULT) < 0)
+            hf_hdf5_fail(io, "write", io->file, group);
     }
     free(l);
 }

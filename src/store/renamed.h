@@ -26,6 +26,9 @@ void hf_renamed_note(hf_hdf5 *io);
  * unit in their names. */
 void hf_renamed_link(hf_hdf5 *io, bool has_rows);
 
+/* Removes all soft links of the file and the groups that hf_renamed_link made. */
+void hf_renamed_unlink(hf_hdf5 *io);
+
 /* Writes today's name of a figure, measure or objective of 0.2 into now[size], and returns it. */
 const char *hf_renamed_figure(const char *then, char *now, size_t size);
 

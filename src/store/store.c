@@ -394,6 +394,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
     double now_s = hf_clock_s();
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
+    if (s->is_continued) return HF_OK; /* the earlier result remains until there is a finished one */
     double since_s = now_s - s->published_at_s;
     if (!at_once && (since_s < PUBLISH_S || since_s < PUBLISH_RATIO * s->publish_s)) {
         s->f.io.status = hf_journal_tend(&s->f.journal, now_s, messages);

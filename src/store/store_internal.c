@@ -54,7 +54,8 @@ void hf_store_put_refine(hf_store *s, bool finished)
 {
     hf_hdf5 *io = &s->f.io;
     if (finished || s->refine) hf_layout_renew(io, io->file, HF_REFINE_STATE);
-    if (!finished && s->refine)
-        hf_hdf5_write_list(io, io->file, HF_REFINE_STATE, HF_KIND_REAL, (int)s->n_refine, 0, "",
-                           "where Levenberg-Marquardt was told to stop", s->refine);
+    if (!s->refine) return;
+    hf_hdf5_write_list(io, io->file, HF_REFINE_STATE, HF_KIND_REAL, (int)s->n_refine, 0, "",
+                       "state of Levenberg-Marquardt after its last step, from which it can continue", s->refine);
+    hf_hdf5_put(io, io->file, HF_REFINE_STATE, "wall_s", HF_KIND_REAL, 0, &s->refine_wall_s);
 }

@@ -11,11 +11,12 @@ struct hf_store {
     hf_generations rows; /* rows.block is NULL before the search, but rows.every is set */
     int n_journal;       /* generations that only the journal has, until hf_store_restore has taken them */
     bool is_resumed;
+    bool is_continued; /* the visible file is finished; it stays as it is until another finished one replaces it */
     char identity[65];
     double publish_s, published_at_s; /* duration of the last publication, and when it ended */
-    /* [n_refine] Wall-clock time and state of hf_store_refine, for the next publication; NULL: none. */
-    double *refine;
+    double *refine;                   /* [n_refine] state of hf_store_refine, for the next publication; NULL: none */
     size_t n_refine;
+    double refine_wall_s; /* wall-clock time until then */
 };
 
 /* Attribute of the root: an earlier result is beside this file while it is unfinished (store_file). */
@@ -54,5 +55,6 @@ void hf_store_free(hf_store *s, hf_messages *messages);
 hf_hdf5 *hf_store_enter(hf_store *s, hf_messages *messages);
 
 #define HF_REFINE_STATE "/refine_state"
-/* Writes the state of hf_store_refine to a file that is published, and removes it from a finished file. */
+/* Writes the state of hf_store_refine. Removes one that an earlier session has left in a file that is finished without
+ * one. */
 void hf_store_put_refine(hf_store *s, bool finished);

@@ -1,6 +1,7 @@
 /* Resumes an unfinished result:
  *
  *     hf_store_resume            copies the visible file and counts the records of the journal
+ *     hf_store_continue          does the same with a finished file, without what comes after its refinement
  *     hf_store_restore_initial      reads the initial design of the search
  *     hf_store_restore           puts the optimiser into the state of the last generation of the file; then, for each
  *                                record, proposes its designs again, compares their hash and takes its results
@@ -99,12 +100,22 @@ static void demand_plain(void *context, const char *path, hid_t object, H5I_type
         hf_hdf5_damaged(io, io->file, path, type == H5I_BADID ? "is a link to another place" : "is no data set");
 }
 
+static void refuse_without_state(hf_hdf5 *io)
+{
+    if (io->status != HF_OK) return;
+    io->status = hf_error(io->messages, HF_EXISTS,
+                          "%s: the option --more needs the state of the refinement, but an earlier version wrote this "
+                          "result without it. Use --restart with a larger value of optimize.refine_steps",
+                          io->path);
+}
+
 /* The names in an unfinished file must be those of this version, because the run goes on writing into it. */
 static void refuse_other_format(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     int version = 0;
     hf_hdf5_get(io, io->file, "/", "format_version", HF_KIND_INT, &version, sizeof version);
+    if (s->is_continued && version != HF_FORMAT_VERSION) refuse_without_state(io);
     if (io->status == HF_OK && version != HF_FORMAT_VERSION)
         io->status = hf_error(io->messages, HF_EXISTS,
                               "%s: this version cannot resume an unfinished result of hifdm 0.2. Finish the run with "
@@ -112,16 +123,29 @@ static void refuse_other_format(hf_store *s)
                               s->f.out.path);
 }
 
+/* Removes from a finished file what its run wrote after the refinement, and the names of version 0.2, which are links.
+ * What remains is the content of an unfinished file. */
+static void remove_later_stages(hf_hdf5 *io)
+{
+    static const char *const later[] = {"/truss", "/load_cases", "/tolerance", "/VTKHDF"};
+    hf_renamed_unlink(io);
+    for (int i = 0; i < HF_HDF5_COUNT(later); i++)
+        hf_layout_renew(io, io->file, later[i]);
+    hf_hdf5_put(io, io->file, "/", HF_KEEPS_EARLIER, HF_KIND_FLAG, 0, &(signed char){0});
+    if (io->status == HF_OK && !hf_hdf5_has(io, io->file, HF_REFINE_STATE)) refuse_without_state(io);
+}
+
 static void read_state(hf_store *s)
 {
     hf_hdf5 *io = &s->f.io;
     signed char finished = 0;
     refuse_other_format(s);
+    if (s->is_continued) remove_later_stages(io);
     hf_hdf5_walk(io, demand_plain, io);
     hf_hdf5_get(io, io->file, "/", "finished", HF_KIND_FLAG, &finished, 1);
     hf_hdf5_get(io, io->file, "/", "identity", HF_KIND_CHARS, s->identity, sizeof s->identity);
     if (hf_store_keeps_earlier(io)) s->f.earlier = HF_EARLIER_KEPT;
-    if (io->status == HF_OK && finished)
+    if (io->status == HF_OK && finished && !s->is_continued)
         io->status = hf_error(io->messages, HF_EXISTS, "%s: this result is finished, so there is nothing to resume",
                               s->f.out.path);
     if (!hf_hdf5_has(io, io->file, "/variable")) { /* the run stopped before its search, or has none */
@@ -135,7 +159,7 @@ static void read_state(hf_store *s)
     if (io->status == HF_OK) io->status = hf_journal_replay(&s->f.journal, s->identity, count_record, s, io->messages);
 }
 
-hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages)
+static hf_status open_earlier(const char *path, bool is_continued, hf_store **store, hf_messages *messages)
 {
     hf_status status;
     *store = NULL;
@@ -143,6 +167,7 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     if (!s) return status;
     hf_hdf5_lock();
     s->is_resumed = true;
+    s->is_continued = is_continued;
     s->rows = (hf_generations){.n_individual = 1, .limit = 1, .every = 1}; /* unless the file says otherwise */
     s->published_at_s = hf_clock_s();                                      /* the content so far is visible */
     hf_store_file_adopt(&s->f);
@@ -151,6 +176,16 @@ hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messa
     if (s->f.io.status == HF_OK) note_session(s);
     hf_store_judge(s);
     return hf_store_hand_over(s, store);
+}
+
+hf_status hf_store_resume(const char *path, hf_store **store, hf_messages *messages)
+{
+    return open_earlier(path, false, store, messages);
+}
+
+hf_status hf_store_continue(const char *path, hf_store **store, hf_messages *messages)
+{
+    return open_earlier(path, true, store, messages);
 }
 
 static void read_initial(hf_hdf5 *io, hid_t place, const char *name, int n_variable, double *initial)
@@ -275,9 +310,9 @@ hf_status hf_store_refine(hf_store *s, double wall_s, size_t n, const double *st
     if (!s) return HF_OK;
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
-    HF_TRY(make_refine(s, n + 1));
-    s->refine[0] = wall_s;
-    memcpy(s->refine + 1, state, n * sizeof *state);
+    HF_TRY(make_refine(s, n));
+    s->refine_wall_s = wall_s;
+    memcpy(s->refine, state, n * sizeof *state);
     return HF_OK;
 }
 
@@ -292,10 +327,11 @@ hf_status hf_store_restore_refine(hf_store *s, double *wall_s, size_t *n, const 
         int n_value = hf_hdf5_length(io, io->file, HF_REFINE_STATE, HF_LAYOUT_COUNT_MAX);
         if (io->status == HF_OK && make_refine(s, (size_t)n_value) == HF_OK)
             hf_hdf5_read_list(io, io->file, HF_REFINE_STATE, HF_KIND_REAL, n_value, 0, s->refine);
+        hf_hdf5_get(io, io->file, HF_REFINE_STATE, "wall_s", HF_KIND_REAL, &s->refine_wall_s, sizeof(double));
         if (io->status == HF_OK) {
-            *wall_s = s->refine[0];
-            *n = s->n_refine - 1;
-            *state = s->refine + 1;
+            *wall_s = s->refine_wall_s;
+            *n = s->n_refine;
+            *state = s->refine;
         }
     }
     return hf_hdf5_unlock(io->status);
