@@ -93,7 +93,7 @@ static int compare_down(const void *a, const void *b)
  * *item becomes its cable. */
 static double brink_N(const hf_required_column *c, const hf_workspace *w, int most, double *item)
 {
-    double best_N = INFINITY;
+    double best_N = -INFINITY;
     for (int i = 0; i < c->n_cable; i++) {
         double T = w->tension_N[c->cable[i]];
         int n_below = 0;

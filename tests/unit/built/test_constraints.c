@@ -1,0 +1,192 @@
+/* Requirements as constraints of the search: their derivatives against differences, on fixed supports and on a truss,
+ * the mean of the worst samples against the quantile, and the violation of a design. */
+#include "nets.h"
+
+#include "built/constraints.h"
+#include "run/problem_nets.h"
+#include "search/sensitivity.h"
+#include <hifdm/problem.h>
+
+enum { MAX_SET = 24, MAX_TRIED = 4, N_CONSTRAINT_MAX = 64 };
+#define MOVE_M 1e-5 /* of the node that a step moves most: differences of order 2 are off by some (MOVE_M/l)^2 */
+#define AGREEMENT 2e-5
+
+static const char truss_path[] = "configs/chen2022-truss.yaml", rigid_path[] = "configs/reflector.yaml";
+static const char *const rigid[] = {"scene.parabolic_cylinder.modules=[3, 3]",
+                                    "scene.parabolic_cylinder.edge_tie_m=0.25",
+                                    "scene.parabolic_cylinder.pattern=triangle"};
+static const char *const common[] = {
+    "form.stop=residual",
+    "form.residual_tolerance=1e-13",
+    "form.length_tolerance=1e-13",
+    "coupling.tof_m=1e-13",
+    "scene.EA_inner_N=1e4",
+    "scene.EA_boundary_N=2e4",
+    "cables=[{expansion_per_K: -2e-6, mass_kg_per_m: 0.01}]",
+    ("load_cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}]"),
+    "tolerance.sigma_cut_m=2e-5",
+    "tolerance.sigma_EA_ratio=0.01",
+    "tolerance.sampling=random",
+    "tolerance.samples=400",
+    "optimize.samples=20",
+    "optimize.symmetry=none",
+    "optimize.variables=[{set: inner, vary: force_density, range: 50 %, link: scale}, "
+    "{set: boundary, vary: force_density, range: 20 %}]",
+};
+
+static const char of_design[] =
+    "requirements=[{figure: psi, at_most: 1e-4}, {figure: surface, feed: fixed, at_most: 1e-4, load_case: all}, "
+    "{figure: surface, at_most: 1e-4}, {figure: facets, at_most: 1e-4, load_case: cold}, "
+    "{figure: tension, set: boundary, within: [1, 2], load_case: all}, {figure: ratio, set: boundary, at_most: 1.5}, "
+    "{figure: slack_cables, at_most: 0, load_case: up}, "
+    "{figure: pull, at_most: 1, load_case: up}, {figure: mass, at_most: 0.1}]";
+static const char of_samples[] = "requirements=[{figure: psi, at_most: 1e-4, share: 0.8, load_case: all}, "
+                                 "{figure: facets, at_most: 1e-4, share: 0.9}, "
+                                 "{figure: tension, set: boundary, within: [1, 2], load_case: all, share: 0.5}, "
+                                 "{figure: tension, set: inner, at_least: 1, load_case: cold, share: 0.85}]";
+
+static void open_problem(hf_problem *p, bool on_truss, const char *requirements)
+{
+    const char *set[MAX_SET];
+    int n = 0;
+    hf_messages messages = {0};
+    for (size_t i = 0; i < sizeof common / sizeof *common; i++)
+        set[n++] = common[i];
+    for (size_t i = 0; i < sizeof rigid / sizeof *rigid && !on_truss; i++)
+        set[n++] = rigid[i];
+    if (on_truss) set[n++] = "truss.expansion_per_K=1e-6";
+    if (on_truss) set[n++] = "surface.frequencies_Hz=[1e9]";
+    set[n++] = requirements;
+    hf_status status = hf_problem_open(source_path(on_truss ? truss_path : rigid_path), set, n, 1, p, &messages);
+    ck_assert_msg(status == HF_OK, "%s", messages.text);
+    hf_messages_free(&messages);
+}
+
+/* ---- derivatives ---- */
+
+static const double *spread(const void *slopes, int i_class, double *move_m, double *tension_rate)
+{
+    hf_sensitivity_spread(slopes, i_class, move_m, tension_rate);
+    return hf_sensitivity_displacement(slopes, i_class, 0);
+}
+
+/* Measures the smooth constraints of the initial design with class i changed by a step. */
+static void measure_at(hf_problem *p, const hf_sensitivity *s, int i, double step, double *value)
+{
+    const hf_model *m = &p->model;
+    hf_form_result result;
+    double *design = malloc((size_t)m->n_variable * sizeof *design);
+    ck_assert_ptr_nonnull(design);
+    for (int k = 0; k < m->n_variable; k++) {
+        bool is_changed = s->class_of_variable[k] == i;
+        double weight = m->variable[k].scales ? p->initial[k] / p->initial[m->variable_leader[k]] : 1;
+        double uneven = m->variable[k].scales ? 1 : 1 + 1e-3 * (k * 7919 % 13); /* mirror images tie for a maximum */
+        design[k] = uneven * p->initial[k] + (is_changed ? weight * step : 0);
+    }
+    hf_evaluator v = p->evaluator;
+    v.by_density = true; /* smooth constraints, which leave the status alone */
+    ck_assert_int_eq(hf_evaluate(&v, design, &p->workspace, &p->point, &result), HF_OK);
+    memcpy(value, p->point.constraint, (size_t)p->objectives.constraints->n * sizeof *value);
+    free(design);
+}
+
+static double largest_move(const hf_problem *p, const hf_sensitivity *s, int i, double *move, double *tension)
+{
+    double most = 0;
+    hf_sensitivity_spread(s, i, move, tension);
+    for (int k = 0; k < 3 * p->model.n_node; k++)
+        most = fmax(most, fabs(move[k]));
+    return most;
+}
+
+START_TEST(derivatives_are_those_of_differences)
+{
+    hf_problem p;
+    hf_sensitivity s;
+    open_problem(&p, _i % 2, _i / 2 ? of_samples : of_design);
+    const hf_constraints *c = p.objectives.constraints;
+    ck_assert_ptr_nonnull(c);
+    ck_assert_int_le(c->n, N_CONSTRAINT_MAX);
+    double up[N_CONSTRAINT_MAX], down[N_CONSTRAINT_MAX], here[N_CONSTRAINT_MAX], largest[N_CONSTRAINT_MAX] = {0};
+    hf_evaluator v = p.evaluator;
+    v.by_density = true;
+    ck_assert_int_eq(hf_sensitivity_create(&v, &s), HF_OK);
+    size_t n = (size_t)s.n;
+    double *rate = malloc((size_t)c->n * n * sizeof *rate), *move = malloc(3 * (size_t)p.model.n_node * sizeof *move),
+           *tension = malloc((size_t)p.model.n_cable * sizeof *tension);
+    ck_assert(rate && move && tension);
+    measure_at(&p, &s, -1, 0, here);
+    ck_assert_int_eq(hf_sensitivity_find(&s, &p.workspace), HF_OK);
+    ck_assert_int_eq(c->linearise(p.point.constraints, s.n, spread, &s, rate), HF_OK);
+    for (int k = 0; k < c->n; k++)
+        for (size_t i = 0; i < n; i++)
+            largest[k] = fmax(largest[k], fabs(rate[(size_t)k * n + i]));
+    for (int i = 0; i < s.n; i += 1 + s.n / MAX_TRIED) {
+        double step = MOVE_M / largest_move(&p, &s, i, move, tension);
+        measure_at(&p, &s, i, step, up);
+        measure_at(&p, &s, i, -step, down);
+        for (int k = 0; k < c->n; k++) {
+            double found = (up[k] - down[k]) / (2 * step), exact = rate[(size_t)k * n + (size_t)i];
+            ck_assert_msg(fabs(found - exact) <= AGREEMENT * largest[k],
+                          "constraint %d, variable %d: %.9g, not %.9g of %g", k, i, exact, found, largest[k]);
+        }
+    }
+    free(rate);
+    free(move);
+    free(tension);
+    hf_sensitivity_free(&s);
+    hf_problem_free(&p);
+}
+END_TEST
+
+/* ---- values ---- */
+
+/* The mean of the worst samples is not below their quantile. A design within the former is thus within the latter. */
+START_TEST(the_mean_of_the_worst_is_conservative)
+{
+    hf_problem p;
+    hf_form_result r;
+    open_problem(&p, _i, of_samples);
+    const hf_constraints *c = p.objectives.constraints;
+    double quantile[N_CONSTRAINT_MAX], mean[N_CONSTRAINT_MAX], violation = 0;
+    hf_evaluate(&p.evaluator, p.initial, &p.workspace, &p.point, &r);
+    memcpy(quantile, p.point.constraint, (size_t)c->n * sizeof *quantile);
+    for (int k = 0; k < c->n; k++)
+        violation += fmax(0, quantile[k]) / c->unit[k];
+    ck_assert_double_gt(violation, 0);
+    ck_assert_int_eq(r.status, HF_OUT_OF_LIMITS);
+    ck_assert_double_eq_tol(r.violation, violation, 1e-12 * violation);
+    hf_evaluator v = p.evaluator;
+    v.by_density = true;
+    hf_evaluate(&v, p.initial, &p.workspace, &p.point, &r);
+    ck_assert_int_eq(r.status, HF_OK); /* the refinement keeps within the constraints itself */
+    memcpy(mean, p.point.constraint, (size_t)c->n * sizeof *mean);
+    for (int k = 0; k < c->n; k++)
+        ck_assert_msg(mean[k] >= quantile[k] - 1e-9 * fabs(quantile[k]), "constraint %d: %g below %g", k, mean[k],
+                      quantile[k]);
+    hf_problem_free(&p);
+}
+END_TEST
+
+START_TEST(rows_that_are_left_out_do_not_constrain)
+{
+    hf_problem p;
+    open_problem(&p, false,
+                 "requirements=[{figure: psi, at_most: 1e-4, search: off}, "
+                 "{figure: tension, set: boundary, at_least: 1, share: 0}, {figure: loose_nodes, at_most: 0}]");
+    ck_assert_ptr_null(p.objectives.constraints);
+    hf_problem_free(&p);
+}
+END_TEST
+
+Suite *suite_unit_constraints(void)
+{
+    Suite *suite = suite_create("unit/built/constraints");
+    TCase *tcase = tcase_create("constraints");
+    tcase_set_timeout(tcase, 300);
+    tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 4);
+    tcase_add_loop_test(tcase, the_mean_of_the_worst_is_conservative, 0, 2);
+    tcase_add_test(tcase, rows_that_are_left_out_do_not_constrain);
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
