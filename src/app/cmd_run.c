@@ -63,7 +63,9 @@ static hf_status run_case(const hf_options *o, FILE *file, hf_messages *messages
     if (o->json)
         hf_summary_write_json(&summary, status, messages->text, path, file);
     else if (path && !o->quiet)
-        hf_print_summary(&summary, path, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
+        hf_print_summary(&summary, path,
+                         (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO), messages->n_error > 0},
+                         file);
     if (status == HF_OK && o->strict) status = judge_strictly(&summary, messages);
     hf_summary_free(&summary);
     return status;

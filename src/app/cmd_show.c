@@ -13,7 +13,8 @@ static hf_status show_study(const hf_options *o, FILE *file, hf_messages *messag
     if (status == HF_OK && o->json)
         hf_print_study_json(&merged, file);
     else if (status == HF_OK)
-        hf_print_study(&merged, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
+        hf_print_study(
+            &merged, (hf_print_style){.verbose = o->verbose, .has_colour = hf_output_has_colour(STDOUT_FILENO)}, file);
     hf_merged_free(&merged);
     return status;
 }
@@ -27,7 +28,9 @@ static hf_status command_show(const hf_options *o, FILE *file, hf_messages *mess
     if (o->json) {
         hf_summary_write_json(&summary, hf_summary_status(&summary), summary.warnings, o->file, file);
     } else {
-        hf_print_summary(&summary, o->file, (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO)}, file);
+        hf_print_summary(&summary, o->file,
+                         (hf_print_style){.verbose = o->verbose, .has_colour = hf_output_has_colour(STDOUT_FILENO)},
+                         file);
         hf_print_lines(summary.warnings, file);
     }
     hf_summary_free(&summary);

@@ -20,6 +20,7 @@ void hf_print_lines(const char *lines, FILE *file);
 typedef struct {
     bool verbose;    /* adds certificates, tension ratios of sets, times and further figures */
     bool has_colour; /* colours of a terminal, see app/output.h */
+    bool has_error;  /* the command prints the error of the run, so the summary does not repeat it */
 } hf_print_style;
 
 /* Prints the summary: the answer in the first line, the case, and a row for each stage. path is that of the result, or

@@ -145,12 +145,14 @@ static void print_front_answer(const hf_summary *s, FILE *f)
     }
 }
 
-/* Prints why a run failed after a successful form-finding, and which design its figures describe. When the stored
- * warnings contain no error, for example because they were cut, it prints the text of the status. */
-static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
+/* Prints why a run failed after a successful form-finding, and which design its figures describe. When the user has
+ * the error already, or the stored warnings contain none, for example because they were cut, it prints the text of the
+ * status. */
+static void print_failure(const hf_summary *s, hf_stage stage, bool has_error, FILE *f)
 {
     char why[HF_WARNINGS_SIZE], shown[HF_WARNINGS_SIZE];
-    const char *line = hf_text_first_error(s->warnings, hf_status_text(s->status));
+    const char *status = hf_status_text(s->status);
+    const char *line = has_error ? status : hf_text_first_error(s->warnings, status);
     if (!s->finished || s->status == HF_OK || s->stage[HF_STAGE_FORM].result.status != HF_OK) return;
     snprintf(why, sizeof why, "%.*s", (int)strcspn(line, "\n"), line);
     hf_text_escape(why, shown, sizeof shown);
@@ -158,12 +160,12 @@ static void print_failure(const hf_summary *s, hf_stage stage, FILE *f)
     if (!s->front) fputs(stage == HF_STAGE_FORM ? "the form-finding has " : "the design has ", f);
 }
 
-void hf_print_answer(const hf_summary *s, FILE *f)
+static void print_answer(const hf_summary *s, bool has_error, FILE *f)
 {
     hf_stage stage = hf_store_result_stage(s);
     const hf_form_result *r = result_of(s, stage);
     if (!s->finished) fputs("unfinished: ", f);
-    print_failure(s, stage, f);
+    print_failure(s, stage, has_error, f);
     if (r->status == HF_NOT_CONVERGED) fputs("not converged: ", f);
     if (r->status != HF_OK && r->status != HF_NOT_CONVERGED) {
         fprintf(f, "no shape: %s", hf_status_text(r->status));
@@ -185,6 +187,11 @@ void hf_print_answer(const hf_summary *s, FILE *f)
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);
+}
+
+void hf_print_answer(const hf_summary *s, FILE *f)
+{
+    print_answer(s, false, f);
 }
 
 /* ---- the table of stages ---- */
@@ -552,7 +559,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     hf_stage result = hf_store_result_stage(s);
     hf_print_requirements(s, style, f);
     if (style.has_colour) fputs(HF_PRINT_BOLD, f);
-    hf_print_answer(s, f);
+    print_answer(s, style.has_error, f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
     fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
