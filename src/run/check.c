@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "run/diagnose.h"
+#include "run/feasible.h"
 #include "run/problem_parts.h"
 #include "search/chord.h"
 #include "search/refine.h"
@@ -330,6 +331,7 @@ hf_status hf_check_try(hf_check *c, hf_messages *messages)
 {
     hf_problem *p = &c->problem;
     const hf_evaluator evaluator = hf_problem_evaluator(p);
+    char advice[HF_FEASIBLE_ADVICE_SIZE];
     time_form(c);
     if (!c->is_form_finished) return HF_OK;
     HF_TRY(hf_problem_explain(p, messages));
@@ -337,6 +339,7 @@ hf_status hf_check_try(hf_check *c, hf_messages *messages)
     if (!c->optimizes) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
+    HF_TRY(hf_feasible_check(p, NULL, advice, messages));
     hf_problem_warn_of_refine(p, messages);
     hf_problem_warn_of_front(p, messages);
     return time_optimisation(c, &evaluator) == HF_OK ? HF_OK : hf_error(messages, HF_NO_MEMORY, "out of memory");

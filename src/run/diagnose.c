@@ -7,6 +7,7 @@
 #include "case/config_fault.h"
 #include "net/target_surface.h"
 #include "net/variables.h"
+#include "run/feasible.h"
 #include "run/problem_parts.h"
 #include "search/refine.h"
 #include "search/sensitivity.h"
@@ -16,6 +17,7 @@
 #include <hifdm/metrics.h>
 #include <hifdm/summary.h>
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -622,21 +624,31 @@ static void name_broken(const hf_problem *p, const hf_workspace *w, const hf_for
     if (hf_status_has_shape(r->status)) hf_limits_name_broken(&p->evaluator, &p->scene, w, text, 2 * HF_HELD_NAME_SIZE);
 }
 
-hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messages *messages)
+/* Writes "Raise form.pretension_N to 12 N, " for the advice "raise form.pretension_N to 12 N", or "" for none. Returns
+ * text. */
+static const char *begin_with(const char *advice, char text[HF_FEASIBLE_ADVICE_SIZE + 2])
+{
+    snprintf(text, HF_FEASIBLE_ADVICE_SIZE + 2, "%s%s", advice, *advice ? ", " : "");
+    *text = (char)toupper((unsigned char)*text);
+    return text;
+}
+
+hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const char *advice, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     long above = of->n_evaluation_above_cap, shapeless = of->n_evaluation_infeasible - above;
     const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
     hf_form_result base;
-    char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
+    char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
     const hf_workspace *w = hf_batch_run_one(&p->batch, of->initial, &base);
     name_broken(p, w, &base, broken);
     if (above > 0 && o->n_limit > 0)
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: the search found no feasible design, because %ld of %ld evaluations exceed "
-                        "optimize.limits or boundary_ratio_cap%s%s. Loosen the limits, or widen %s%s",
+                        "optimize.limits or boundary_ratio_cap%s%s. %s%soosen the limits, or widen %s%s",
                         above, of->n_evaluation, *broken ? "; of the initial design, the" : "",
-                        broken + (*broken == ':'), wider, hf_no_design_cap(p, base.boundary_tension_ratio, hint));
+                        broken + (*broken == ':'), begin_with(advice, first), *advice ? "l" : "L", wider,
+                        hf_no_design_cap(p, base.boundary_tension_ratio, hint));
     if (above == 0)
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: the search found no feasible design, because none of %ld evaluations has a shape "
@@ -653,14 +665,16 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, hf_messag
                     hf_no_design_cap(p, INFINITY, hint));
 }
 
-const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_status status, char text[HF_NO_DESIGN_SIZE])
+const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_status status, const char *advice,
+                                   char text[HF_NO_DESIGN_SIZE])
 {
     hf_form_result start;
-    char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE];
+    char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
     hf_evaluate(&p->evaluator, design, &p->workspace, &p->point, &start);
     name_broken(p, &p->workspace, &start, broken);
-    snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s",
-             hf_status_text(status), broken, hf_no_design_cap(p, start.boundary_tension_ratio, hint));
+    snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s%s%s%s",
+             hf_status_text(status), broken, *advice ? ". " : "", begin_with(advice, first),
+             *advice ? "or loosen the limits" : "", hf_no_design_cap(p, start.boundary_tension_ratio, hint));
     return text;
 }
 

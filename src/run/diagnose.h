@@ -30,12 +30,14 @@ hf_status hf_reach_check(const hf_problem *problem, hf_messages *messages);
 #define HF_NO_DESIGN_SIZE 1024
 #define HF_NO_DESIGN_HINT_SIZE 192
 
-/* Reports that no individual of any generation was feasible. Returns HF_NO_FEASIBLE, with a message. */
-hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, hf_messages *messages);
+/* Reports that no individual of any generation was feasible. `advice` is that of hf_feasible_check. Returns
+ * HF_NO_FEASIBLE, with a message. */
+hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, const char *advice,
+                               hf_messages *messages);
 
-/* Writes why Levenberg-Marquardt refused to start from this design [n_variable] with this status. Overwrites the shape
- * in the problem's workspace. Returns text. */
-const char *hf_no_design_to_refine(hf_problem *problem, const double *design, hf_status status,
+/* Writes why Levenberg-Marquardt refused to start from this design [n_variable] with this status, with the advice of
+ * hf_feasible_check. Overwrites the shape in the problem's workspace. Returns text. */
+const char *hf_no_design_to_refine(hf_problem *problem, const double *design, hf_status status, const char *advice,
                                    char text[HF_NO_DESIGN_SIZE]);
 
 /* Writes "; 10 is the default of ..." if the ratio exceeds a cap that the case does not set, because its author may not

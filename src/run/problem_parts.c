@@ -152,6 +152,24 @@ static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_m
     return hf_scene_doubt(&p->scene, messages);
 }
 
+hf_status hf_problem_hold_at(const hf_problem *p, const hf_problem_source *source, double pretension_N,
+                             double *tension_N)
+{
+    hf_messages unread = {0};
+    hf_problem *other = calloc(1, sizeof *other);
+    if (!other) return HF_NO_MEMORY;
+    other->settings = p->settings;
+    other->settings.form.pretension_N = pretension_N;
+    hf_status status = make_scene(source, other, &unread);
+    if (status == HF_OK) status = hf_prestress_hold(&other->scene, &other->settings.form, NULL, &unread);
+    for (int e = 0; status == HF_OK && e < p->scene.n_cable; e++)
+        tension_N[e] = other->scene.target[e] * hf_scene_length_at_target(&other->scene, e);
+    hf_scene_free(&other->scene);
+    hf_messages_free(&unread);
+    free(other);
+    return status;
+}
+
 static hf_status load_parts(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
                             const volatile sig_atomic_t *stop, hf_problem *p, hf_messages *messages)
 {

@@ -13,6 +13,12 @@
 hf_status hf_problem_load(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
                           const volatile sig_atomic_t *stop, hf_problem *problem, hf_messages *messages);
 
+/* Finds the tensions tension_N [n_cable] that would hold the nodes of a problem with form.prestress: exact with another
+ * form.pretension_N. `source` is that of hf_problem_load. Returns HF_OK, HF_NO_MEMORY, or another status without a
+ * message if there are none. */
+hf_status hf_problem_hold_at(const hf_problem *problem, const hf_problem_source *source, double pretension_N,
+                             double *tension_N);
+
 /* Sets the members of the summary that case and model determine. */
 void hf_problem_describe(const hf_problem *problem, hf_summary *summary);
 

@@ -14,6 +14,7 @@
 #pragma once
 
 #include "run/diagnose.h"
+#include "run/feasible.h"
 #include "run/load_case_stage.h"
 #include "run/requirements_stage.h"
 #include "run/take_point.h"
@@ -37,11 +38,12 @@ typedef struct {
     hf_places places;       /* after form-finding, if an optimisation follows */
     hf_optimiser_plan plan; /* the algorithms of optimize.method */
     hf_optimiser optimiser;
-    double *design;                      /* [n_variable] best design so far, of the problem or of the population */
-    hf_front front;                      /* front of optimize.front */
-    hf_taken_point taken;                /* point taken instead of a search */
-    int steps_before;                    /* steps of the finished refinement that the run continues */
-    char stopped_at[HF_STOPPED_AT_SIZE]; /* how far an interrupted stage came, for the message */
+    double *design;                       /* [n_variable] best design so far, of the problem or of the population */
+    hf_front front;                       /* front of optimize.front */
+    hf_taken_point taken;                 /* point taken instead of a search */
+    int steps_before;                     /* steps of the finished refinement that the run continues */
+    char advice[HF_FEASIBLE_ADVICE_SIZE]; /* what would let the initial design meet the limits on tensions, or "" */
+    char stopped_at[HF_STOPPED_AT_SIZE];  /* how far an interrupted stage came, for the message */
 } hf_run;
 
 /* Returns true if the caller has told the run to stop. */

@@ -27,6 +27,7 @@ hf_status hf_stage_begin(hf_run *r, hf_summary *s, hf_messages *messages)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the target positions");
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
+    HF_TRY(hf_feasible_check(p, r->request->input.source, r->advice, messages));
     if (p->objectives.n_objective &&
         hf_objectives_measure(&p->objectives, &p->workspace, &p->point, form->objective, &form->merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
@@ -194,7 +195,7 @@ hf_status hf_stage_search(hf_run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(begin_generations(&q));
     if (hf_run_must_stop(r)) return HF_INTERRUPTED;
     HF_TRY(evolve(&q));
-    if (p->best < 0) return hf_no_design_evolved(&r->problem, p, messages);
+    if (p->best < 0) return hf_no_design_evolved(&r->problem, p, r->advice, messages);
     r->design = p->design + (size_t)p->best * (size_t)p->n_variable;
     return store_best(r, s, messages);
 }
