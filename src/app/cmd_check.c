@@ -368,6 +368,8 @@ static hf_status check_case(const hf_check_request *request, const char *name, h
     print_plan(c, f);
     print_memory(c, f);
     print_form_time(c, f);
+    if (!isnan(c->load_cases_s))
+        fprintf(f, "                load cases: %s\n", hf_print_duration(c->load_cases_s).text);
     print_tolerance_time(c, f);
     if (!isnan(c->design_s))
         fprintf(f, "                optimisation: %s for a design of the first generation by %s; at most about %s\n",
@@ -427,12 +429,12 @@ static hf_status print_done(const hf_study *s, int count[HF_N_POINT_STATE], FILE
     return status;
 }
 
-static void print_time(int n, const char *what, double each_s, int threads, bool has_tolerance, FILE *f)
+static void print_time(int n, const char *what, double each_s, int threads, FILE *f)
 {
     double all_s = hf_check_together_s(each_s, n, &threads);
-    fprintf(f, "%d point%s to run%s, each like this one at most some %s, on %d thread%s: at most about %s%s\n", n,
+    fprintf(f, "%d point%s to run%s, each like this one at most some %s, on %d thread%s: at most about %s\n", n,
             n == 1 ? "" : "s", what, hf_print_duration(each_s).text, threads, threads == 1 ? "" : "s",
-            hf_print_duration(all_s).text, has_tolerance ? ", plus the time of the as-built samples" : "");
+            hf_print_duration(all_s).text);
 }
 
 /* Prints what a sweep runs by default, and what it runs again with --retry. */
@@ -441,7 +443,7 @@ static void print_left(const hf_study *s, const int count[HF_N_POINT_STATE], dou
     static const hf_point_state other[] = {HF_POINT_FAILED, HF_POINT_OUTDATED, HF_POINT_RUNNING};
     int n_missing = count[HF_POINT_MISSING], n_anew = count[HF_POINT_FAILED] + count[HF_POINT_OUTDATED];
     char others[128] = "", retry[64] = "", item[32];
-    if (n_missing) print_time(n_missing, "", each_s, threads, s->has_tolerance, f);
+    if (n_missing) print_time(n_missing, "", each_s, threads, f);
     if (n_missing && n_anew) strcpy(retry, hf_point_state_word[0]);
     for (size_t k = 0; k < sizeof other / sizeof *other; k++) {
         const char *word = hf_point_state_word[other[k]];
@@ -457,7 +459,7 @@ static void print_left(const hf_study *s, const int count[HF_N_POINT_STATE], dou
         hf_print_line(f, "nothing is missing; %s", others);
     else if (!n_missing)
         fprintf(f, "all points have been run\n");
-    if (!n_missing && n_anew) print_time(n_anew, " anew", each_s, threads, s->has_tolerance, f);
+    if (!n_missing && n_anew) print_time(n_anew, " anew", each_s, threads, f);
 }
 
 static hf_status check_points(const hf_check_request *request, const hf_study *s, hf_check *check, FILE *f,

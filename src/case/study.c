@@ -296,7 +296,6 @@ static hf_status learn_from(hf_study *s, int i, hf_case *c, hf_messages *message
     s->has_optimize = c->has_optimize;
     s->derives_seed = c->has_optimize && !has_seed_axis;
     s->seed = c->optimize.seed;
-    s->has_tolerance = c->has_tolerance;
     if (!*s->title) snprintf(s->title, sizeof s->title, "%s", c->title);
     return HF_OK;
 }

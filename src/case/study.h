@@ -63,7 +63,6 @@ typedef struct {
     char (*id)[HF_STUDY_ID_SIZE]; /* [n_point] */
     hf_study_name *by_id;         /* [n_point], sorted */
     bool has_optimize;            /* the points have a section optimize */
-    bool has_tolerance;           /* the points have a section tolerance */
     bool derives_seed;            /* true: every point has a seed of its own; optimize.seed is no axis */
     uint64_t seed;                /* optimize.seed of the base case */
     char fingerprint

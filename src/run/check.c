@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "run/diagnose.h"
 #include "run/feasible.h"
+#include "run/load_case_stage.h"
 #include "run/problem_parts.h"
 #include "search/chord.h"
 #include "search/refine.h"
@@ -28,7 +29,10 @@
 #define STEP_MOST_S 3.0 /* counted time of a step above which no step is tried */
 #define LONG_S 3600.0   /* above this time, or above LARGE_BYTES, advice is given */
 #define LARGE_BYTES 2e9
-#define TRIAL_S 1.0 /* approximate wall-clock time of the trial of form-finding */
+#define TRIAL_S 1.0 /* approximate time of the trial of form-finding */
+/* Iterations of the first trial of form-finding, and the factor to the next. */
+#define FIRST_TRIAL 16
+#define TRIAL_GROWTH 4
 /* Time for making the nets of the points of a study; for one with more than MANY points, only MAKING_FEW_S. */
 #define MAKING_S 5.0
 #define MANY 100000
@@ -177,23 +181,38 @@ static hf_status time_truss(hf_check *c, hf_messages *messages)
     return status;
 }
 
-/* Tries the form-finding: three iterations measure the time of one, then as many run as fit into TRIAL_S. */
+/* Tries the form-finding, each time with more iterations, until it ends or the next trial would take more than
+ * TRIAL_S. The first iterations cost more than later ones, above all on a truss. */
 static void time_form(hf_check *c)
 {
     hf_problem *p = &c->problem;
     hf_form_settings form = p->settings.form;
     hf_form_result *r = &p->form;
     int most = p->settings.form.max_iterations;
-    form.max_iterations = most < 3 ? most : 3;
-    double begin_s = hf_clock_s();
-    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
-    double iteration_s = (hf_clock_s() - begin_s) / r->iterations, affordable = TRIAL_S / iteration_s;
-    form.max_iterations = affordable < most ? (int)affordable + 1 : most;
-    begin_s = hf_clock_s();
-    hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
-    c->is_form_finished = r->status != HF_NOT_CONVERGED || form.max_iterations >= most;
-    c->form_s = c->is_form_finished ? hf_clock_s() - begin_s : iteration_s * most;
-    c->at_most_s = c->form_s;
+    double trial_s = 0;
+    for (int n = FIRST_TRIAL; !c->is_form_finished && trial_s * TRIAL_GROWTH < TRIAL_S; n *= TRIAL_GROWTH) {
+        form.max_iterations = n < most ? n : most;
+        double begin_s = hf_clock_thread_cpu_s();
+        hf_evaluate_form(&p->model, &form, &p->workspace, NULL, r);
+        trial_s = hf_clock_thread_cpu_s() - begin_s;
+        c->is_form_finished = r->status != HF_NOT_CONVERGED || form.max_iterations >= most;
+    }
+    c->form_s = c->is_form_finished ? trial_s : trial_s / r->iterations * most;
+    c->at_most_s += c->form_s;
+}
+
+/* Finds the time of the load cases, at the shape of form-finding. */
+static hf_status time_load_cases(hf_check *c, hf_messages *messages)
+{
+    const hf_problem *p = &c->problem;
+    double all_s;
+    if (p->load_cases.n == 0 || p->form.status != HF_OK) return HF_OK;
+    hf_status status = hf_load_case_stage_try(p, &p->workspace, TRIAL_S, &all_s);
+    if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the load cases");
+    if (status != HF_OK) return HF_OK;
+    c->load_cases_s = all_s;
+    c->at_most_s += all_s;
+    return HF_OK;
 }
 
 /* Finds the time of the as-built samples, at the shape of form-finding. */
@@ -208,9 +227,11 @@ static void time_tolerance(hf_check *c)
     c->tolerance_threads = threads;
     c->tolerance_s =
         t->begin_s + hf_check_together_s(t->sample_s, p->settings.tolerance.samples, &c->tolerance_threads);
+    c->at_most_s += c->tolerance_s;
     if (!t->scale_yields) return;
     double each_s = t->scale_s > 0 ? t->scale_s / t->scale_samples : t->scale_sample_s * t->scale_yields;
     c->yields_s = hf_check_together_s(each_s, t->scale_samples, &threads);
+    c->at_most_s += c->yields_s;
 }
 
 /* Evaluates the first generation in one thread. The time of the whole search is that of one design, times the designs
@@ -223,9 +244,9 @@ static hf_status time_search(hf_check *c, const hf_evaluator *v, const hf_popula
     hf_status status = hf_batch_create(v, 1, &batch);
     if (status == HF_OK) {
         c->solver = hf_batch_share(&batch, c->problem.initial);
-        double begin_s = hf_clock_s();
+        double begin_s = hf_clock_thread_cpu_s();
         hf_batch_run(&batch, ga->n_individual, ga->design, ga->pending, ga->result);
-        c->design_s = (hf_clock_s() - begin_s) / ga->n_individual;
+        c->design_s = (hf_clock_thread_cpu_s() - begin_s) / ga->n_individual;
         c->search_s = hf_check_together_s(c->design_s, o->population, &threads) * o->generations;
         c->at_most_s += c->search_s;
     }
@@ -313,10 +334,12 @@ hf_status hf_check_load(const hf_check_request *q, hf_check *c, hf_messages *mes
 {
     hf_problem *p = &c->problem;
     c->threads = q->threads;
-    c->form_s = c->design_s = c->step_s = (double)NAN;
+    c->form_s = c->load_cases_s = c->design_s = c->step_s = (double)NAN;
+    double begin_s = hf_clock_thread_cpu_s();
     HF_TRY(hf_problem_load(q->path, NULL, q->set, q->n_set, NULL, p, messages));
     HF_TRY(hf_tolerance_stage_check(p, false, messages));
     HF_TRY(hf_problem_allocate(p, messages));
+    c->at_most_s = hf_clock_thread_cpu_s() - begin_s;
     const hf_evaluator evaluator = hf_problem_evaluator(p);
     find_stages(c, &evaluator);
     count_net(c);
@@ -335,6 +358,7 @@ hf_status hf_check_try(hf_check *c, hf_messages *messages)
     time_form(c);
     if (!c->is_form_finished) return HF_OK;
     HF_TRY(hf_problem_explain(p, messages));
+    HF_TRY(time_load_cases(c, messages));
     time_tolerance(c);
     if (!c->optimizes) return HF_OK;
     HF_TRY(hf_problem_base(p, messages));

@@ -57,6 +57,7 @@ typedef struct {
 
     /* Set by hf_check_try. */
     double form_s;         /* time of the form-finding; a maximum if it is not finished */
+    double load_cases_s;   /* time of all load cases */
     bool is_form_finished; /* the trial came to an end */
     bool has_tolerance;    /* `tolerance` is set */
     hf_tolerance_trial tolerance;
@@ -69,9 +70,7 @@ typedef struct {
     bool is_refine_tried;         /* true: the trial took all n_step steps, from the initial design */
     double step_s, refine_s;      /* times of a step of Levenberg-Marquardt, and of all expected steps */
     bool advises_fewer;           /* the refinement takes long or much memory: fewer variables would be better */
-    /* Time of a run, without the as-built nets of a section `tolerance`: the maximum of the search, and the expected
-     * time of the refinement. */
-    double at_most_s;
+    double at_most_s; /* time of a run: the maximum of the search, and the expected time of all else */
 } hf_check;
 
 /* Loads the case and finds what does not need a trial. *check must be zero on entry. Returns HF_OK; HF_BAD_CASE with

@@ -10,6 +10,7 @@
 #include "run/stages.h"
 
 #include "base/arena.h"
+#include "base/clock.h"
 #include "case/config_fault.h"
 #include "solve/certificate.h"
 #include "solve/coupling.h"
@@ -168,6 +169,25 @@ static hf_status run_load_case(hf_run *r, int k, hf_load_case_summary *s, hf_mes
     if (status == HF_OK)
         hf_requirements_stage_take(&r->requirements, 1 + k, &loaded, &c->workspace, &s->result, &s->surface);
     hf_carrier_state_free(&truss);
+    return status;
+}
+
+hf_status hf_load_case_stage_try(const hf_problem *p, const hf_workspace *shape, double most_s, double *all_s)
+{
+    hf_load_case_stage c = {0};
+    hf_load_case_summary unread;
+    hf_messages messages = {0};
+    double begin_s = hf_clock_thread_cpu_s(), spent_s = 0;
+    int n = 0;
+    hf_status status = hf_load_case_stage_take(p, shape, &c, &messages);
+    for (; status == HF_OK && n < p->load_cases.n && spent_s < most_s; n++) {
+        unread = (hf_load_case_summary){0};
+        status = run_load_case(p, &p->load_cases.load_case[n], &c, NULL, &unread, &messages);
+        spent_s = hf_clock_thread_cpu_s() - begin_s;
+    }
+    if (status == HF_OK) *all_s = spent_s * p->load_cases.n / n;
+    hf_load_case_stage_free(&c);
+    hf_messages_free(&messages);
     return status;
 }
 

@@ -28,4 +28,8 @@ hf_status hf_load_case_stage_rest(const hf_problem *problem, double *move_m);
  * rise of its part by 1 K, m/K. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_load_case_stage_rest_by_heat(const hf_problem *problem, double *move_m_per_K);
 
+/* Sets *all_s to the estimated processor time of all load cases at this shape, s. Further load cases are tried as long
+ * as earlier ones took less than most_s. Returns HF_OK or the status that prevents load cases, without a message. */
+hf_status hf_load_case_stage_try(const hf_problem *problem, const hf_workspace *shape, double most_s, double *all_s);
+
 void hf_load_case_stage_free(hf_load_case_stage *cases);

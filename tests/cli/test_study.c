@@ -275,7 +275,6 @@ START_TEST(check_says_what_a_sweep_would_do)
     OUT(": form.pretension_N=40, scene.EA_boundary_N=200000\n");
     OUT("0 done, 0 failed, 0 running, 18 to run");
     OUT("18 points to run, each like this one at most some ");
-    OUT(", plus the time of the as-built samples");
     OUT("the first point, ");
     SHELL(0, "cd \"$1\" && ls && test ! -e s.d", temp("")); /* nothing is written */
     SHELL(0, "cd \"$1\" && \"$0\" sweep s.yaml --quiet && \"$0\" check s.yaml", temp(""));
