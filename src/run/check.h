@@ -70,7 +70,7 @@ typedef struct {
     bool is_refine_tried;         /* true: the trial took all n_step steps, from the initial design */
     double step_s, refine_s;      /* times of a step of Levenberg-Marquardt, and of all expected steps */
     bool advises_fewer;           /* the refinement takes long or much memory: fewer variables would be better */
-    double at_most_s; /* time of a run: the maximum of the search, and the expected time of all else */
+    double at_most_s;             /* time of a run: the maximum of the search, and the expected time of all else */
 } hf_check;
 
 /* Loads the case and finds what does not need a trial. *check must be zero on entry. Returns HF_OK; HF_BAD_CASE with

@@ -138,11 +138,11 @@ hf_status hf_load_case_stage_rest_by_heat(const hf_problem *p, double *move_m_pe
     return status;
 }
 
-static hf_status run_load_case(hf_run *r, int k, hf_load_case_summary *s, hf_messages *messages)
+/* Runs load case k. `requirements` is NULL if no figure of it is required. */
+static hf_status run_load_case(const hf_problem *p, int k, hf_load_case_stage *c, hf_store *store,
+                               hf_requirements_stage *requirements, hf_load_case_summary *s, hf_messages *messages)
 {
-    const hf_problem *p = &r->problem;
     const hf_load_case *load_case = &p->load_cases.load_case[k];
-    hf_load_case_stage *c = &r->cases;
     bool has_truss = p->settings.has_truss;
     hf_frame_load own = {0};
     hf_built_net net;
@@ -159,15 +159,15 @@ static hf_status run_load_case(hf_run *r, int k, hf_load_case_summary *s, hf_mes
     if (s->result.status != HF_OK) return HF_OK;
     hf_model loaded = c->built.model;
     loaded.load_N = c->load_N;
-    if (r->requirements.required.nominal >> (1 + k) & 1u) hf_certify(&loaded, &c->workspace, &s->result);
+    if (requirements && requirements->required.nominal >> (1 + k) & 1u) hf_certify(&loaded, &c->workspace, &s->result);
     if (has_truss) {
         hf_coupling_forces(&loaded, &c->workspace);
         status = hf_carrier_load(&p->carrier, c->workspace.attachment_force_N, &own, &truss);
         if (status != HF_OK) hf_error(messages, status, "out of memory for the forces in the truss");
     }
-    if (status == HF_OK) status = keep_shape(p, c, r->store, has_truss ? &truss : NULL, s, messages);
-    if (status == HF_OK)
-        hf_requirements_stage_take(&r->requirements, 1 + k, &loaded, &c->workspace, &s->result, &s->surface);
+    if (status == HF_OK) status = keep_shape(p, c, store, has_truss ? &truss : NULL, s, messages);
+    if (status == HF_OK && requirements)
+        hf_requirements_stage_take(requirements, 1 + k, &loaded, &c->workspace, &s->result, &s->surface);
     hf_carrier_state_free(&truss);
     return status;
 }
@@ -182,7 +182,7 @@ hf_status hf_load_case_stage_try(const hf_problem *p, const hf_workspace *shape,
     hf_status status = hf_load_case_stage_take(p, shape, &c, &messages);
     for (; status == HF_OK && n < p->load_cases.n && spent_s < most_s; n++) {
         unread = (hf_load_case_summary){0};
-        status = run_load_case(p, &p->load_cases.load_case[n], &c, NULL, &unread, &messages);
+        status = run_load_case(p, n, &c, NULL, NULL, &unread, &messages);
         spent_s = hf_clock_thread_cpu_s() - begin_s;
     }
     if (status == HF_OK) *all_s = spent_s * p->load_cases.n / n;
@@ -216,7 +216,7 @@ hf_status hf_stage_load_cases(hf_run *r, hf_summary *summary, hf_messages *messa
         *s = (hf_load_case_summary){.result.status = HF_NOT_EVALUATED};
         snprintf(s->name, sizeof s->name, "%s", p->load_cases.load_case[k].name);
         s->tension_min_N = s->tension_max_N = s->displacement_rms_m = s->member_force_max_N = (double)NAN;
-        HF_TRY(run_load_case(r, k, s, messages));
+        HF_TRY(run_load_case(p, k, c, r->store, &r->requirements, s, messages));
         if (hf_run_must_stop(r)) return HF_INTERRUPTED;
         summary->n_load_case = k + 1;
         warn(s, messages);
