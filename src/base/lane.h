@@ -190,6 +190,58 @@ INLINE vec magnitude(vec a)
     return larger(a, -a);
 }
 
+/* Computes cosine and sine of an angle in turns, below 2^51; the error is below 6e-16. Whole turns are subtracted
+ * exactly, which leaves -1/2 to 1/2. Series give cosine and sine of half of the angle, and then its double follows. */
+INLINE void turn(vec turns, vec *cosine, vec *sine)
+{
+    static const double s[] = {-2.2948428997269873e-08, 7.952054001475513e-07,  -2.1915353447830217e-05,
+                               0.00046630280576761255,  -0.0073704309457143504, 0.08214588661112823,
+                               -0.5992645293207921,     2.5501640398773455,     -5.16771278004997,
+                               3.141592653589793};
+    static const double c[] = {3.604730797462501e-09,
+                               -1.3878952462213771e-07,
+                               4.303069587032947e-06,
+                               -0.0001046381049248457,
+                               0.0019295743094039231,
+                               -0.02580689139001406,
+                               0.2353306303588932,
+                               -1.3352627688545895,
+                               4.0587121264167685,
+                               -4.934802200544679,
+                               1.0};
+    vec whole = (turns + 0x1.8p52) - 0x1.8p52, r = turns - whole, square = r * r, half = splat(s[0]),
+        other = splat(c[0]);
+    foreach (k, 9)
+        half = plus_product(splat(s[k + 1]), half, square);
+    foreach (k, 10)
+        other = plus_product(splat(c[k + 1]), other, square);
+    half *= r;
+    vec twice = half + half;
+    *sine = twice * other;
+    *cosine = less_product(splat(1), twice, half);
+}
+
+/* Returns a^q for a > 0, else 0. The relative error is below 1e-15 (1 + q |ln a|). With a = 2^k m and m around 1, the
+ * binary logarithm of a is k + that of m, and ln m = 2 artanh u with u = (m - 1)/(m + 1), as in hf_logarithm. Powers
+ * below 2^-900 are 0. */
+INLINE vec power(vec a, double q)
+{
+    const double ln_2 = 0.69314718055994530942;
+    bits_of bits = (bits_of)a, mantissa = (bits & 0xfffffffffffffULL) | 0x3ff0000000000000ULL;
+    vec m = (vec)mantissa, k = (vec)((bits >> 52) | 0x4330000000000000ULL) - (0x1p52 + 1023);
+    k = if_greater(m, splat(1.4142135623730951), k + 1, k);
+    m = if_greater(m, splat(1.4142135623730951), 0.5 * m, m);
+    vec u = (m - 1) / (m + 1), square = u * u, sum = splat(1.0 / 21);
+    foreach (i, 10)
+        sum = plus_product(splat(1.0 / (19 - 2 * i)), sum, square);
+    vec exponent = q * plus_product(k, u * sum, splat(2 / ln_2)), moved = exponent + 0x1.8p52;
+    vec t = (exponent - (moved - 0x1.8p52)) * ln_2, grown = splat(1);
+    foreach (i, 13)
+        grown = plus_product(splat(1), t * (1.0 / (13 - i)), grown);
+    vec scale = (vec)(((bits_of)moved + 1023) << 52), result = grown * scale;
+    return if_greater(a, splat(0), if_greater(exponent, splat(-900), result, splat(0)), splat(0));
+}
+
 #endif
 
 /* ---- eight doubles in one vector, which the compiler divides ---- */

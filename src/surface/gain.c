@@ -37,16 +37,20 @@ static double phase_across(const hf_gain_beam *b, const hf_facets *facets, int i
     return HF_PI / b->wavelength_m * most_m;
 }
 
+void hf_gain_polarisation(hf_polarisation polarisation, const double to[3], double co[3])
+{
+    const int along = polarisation == HF_POLARISATION_Y;
+    for (int d = 0; d < 3; d++) /* as in the cuts */
+        co[d] = (d == along) - to[along] / (1 + to[2]) * (to[d] + (d == 2));
+}
+
 void hf_gain_beam_make(const hf_surface_settings *s, const hf_facets *facets, const double *position_m,
                        double frequency_Hz, hf_gain_beam *b)
 {
     double most = 0;
-    int along = s->pattern.polarisation == HF_POLARISATION_Y;
-    *b = (hf_gain_beam){.wavelength_m = HF_LIGHT_M_PER_S / frequency_Hz};
+    *b = (hf_gain_beam){.wavelength_m = HF_LIGHT_M_PER_S / frequency_Hz, .polarisation = s->pattern.polarisation};
     hf_feed_make(s, facets, position_m, &b->feed);
-    const double *to = b->feed.beam;
-    for (int d = 0; d < 3; d++) /* Ludwig's third definition, as in the cuts */
-        b->co[d] = (d == along) - to[along] / (1 + to[2]) * (to[d] + (d == 2));
+    hf_gain_polarisation(b->polarisation, b->feed.beam, b->co);
     for (int i = 0; i < facets->n_facet; i++)
         most = fmax(most, phase_across(b, facets, i, position_m));
     b->order = hf_gauss_order(most + ERROR_PHASE, ORDER_LN, HF_GAIN_ORDER_MOST);

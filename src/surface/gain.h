@@ -14,7 +14,8 @@ enum { HF_GAIN_ORDER_MOST = 16 };
 /* Quantities of one frequency that do not depend on the shape. */
 typedef struct hf_gain_beam {
     hf_feed feed;
-    double co[3]; /* polarisation in the direction feed.beam */
+    hf_polarisation polarisation; /* of the feed on its axis */
+    double co[3];                 /* in the direction feed.beam */
     double wavelength_m;
     int order;                                                 /* quadrature points along each side of a facet */
     double at[HF_GAIN_ORDER_MOST], weight[HF_GAIN_ORDER_MOST]; /* [order], the rule */
@@ -24,6 +25,9 @@ typedef struct hf_gain_beam {
  * there must be a facet. If the order is HF_GAIN_ORDER_MOST, the facets are too coarse for this frequency. */
 void hf_gain_beam_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m,
                        double frequency_Hz, hf_gain_beam *beam);
+
+/* Computes the polarisation in a direction by Ludwig's third definition. */
+void hf_gain_polarisation(hf_polarisation polarisation, const double direction[3], double co[3]);
 
 /* Returns the loss of gain in the direction of the beam relative to the same current in phase, dB. It is infinite if
  * all gain is lost, and NaN if no facet is illuminated. */

@@ -20,37 +20,6 @@ INLINE void set(double *array, ptrdiff_t i, vec value)
     *(vec *)(void *)(array + i) = value;
 }
 
-/* Computes cosine and sine of an angle in turns, below 2^51; the error is below 6e-16. Whole turns are subtracted
- * exactly, which leaves -1/2 to 1/2. Series give cosine and sine of half of the angle, and then its double follows. */
-INLINE void turn(vec turns, vec *cosine, vec *sine)
-{
-    static const double s[] = {-2.2948428997269873e-08, 7.952054001475513e-07,  -2.1915353447830217e-05,
-                               0.00046630280576761255,  -0.0073704309457143504, 0.08214588661112823,
-                               -0.5992645293207921,     2.5501640398773455,     -5.16771278004997,
-                               3.141592653589793};
-    static const double c[] = {3.604730797462501e-09,
-                               -1.3878952462213771e-07,
-                               4.303069587032947e-06,
-                               -0.0001046381049248457,
-                               0.0019295743094039231,
-                               -0.02580689139001406,
-                               0.2353306303588932,
-                               -1.3352627688545895,
-                               4.0587121264167685,
-                               -4.934802200544679,
-                               1.0};
-    vec whole = (turns + 0x1.8p52) - 0x1.8p52, r = turns - whole, square = r * r, half = splat(s[0]),
-        other = splat(c[0]);
-    foreach (k, 9)
-        half = plus_product(splat(s[k + 1]), half, square);
-    foreach (k, 10)
-        other = plus_product(splat(c[k + 1]), other, square);
-    half *= r;
-    vec twice = half + half;
-    *sine = twice * other;
-    *cosine = less_product(splat(1), twice, half);
-}
-
 static void points(int n_point, const double *point, int n_angle, const double *direction, double *sum)
 {
     for (ptrdiff_t a = 0; a < n_angle; a += WIDTH) {

@@ -4,7 +4,7 @@
  *       -> Gauss-Newton steps with this factor: turn, shift, curvature -> RMS at convergence
  *       -> if it does not converge or is not well inside the bounds: the caller uses hf_surface_fit_points
  *
- * Contents: a pose - rows of points - steps */
+ * Contents: a pose - rows of points - steps - changes of a fit */
 #include "surface/surface_near.h"
 
 #include "base/elementary.h"
@@ -138,9 +138,8 @@ static bool take_normal(const problem *p, double factor[N * N], int pivot[N], do
     return hf_dense_factor(N, factor, pivot) == 0;
 }
 
-static void take_step(problem *p, const double step[N])
+static void take_step(hf_surface_pose *q, const double step[N])
 {
-    hf_surface_pose *q = &p->pose;
     bool is_round = q->kind == HF_SURFACE_PARABOLOID;
     double size = q->size_m, move[3] = {size * step[1], is_round ? size * step[2] : 0, size * step[0]}, turn[3];
     for (int d = 0; d < 3; d++)
@@ -157,8 +156,8 @@ static bool is_well_inside(const hf_surface_pose *q)
     return across <= ACROSS_MOST * q->size_m && ratio <= FOCAL_MOST && ratio >= 1 / FOCAL_MOST;
 }
 
-bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
-                         double *half_path_rms_m)
+bool hf_surface_pose_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
+                          hf_surface_pose *pose, double *half_path_rms_m)
 {
     problem p = {*from, n, {position_m, position_m + n, position_m + 2 * (size_t)n}, root_weight};
     double factor[N * N], last[N + 1], step[N], weight = 0;
@@ -172,13 +171,52 @@ bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *posit
             step[j] = -last[j];
         hf_dense_solve(N, factor, pivot, 1, step);
         double gain = -hf_dot(N, last, step);
-        take_step(&p, step);
+        take_step(&p.pose, step);
         if (fabs(gain) <= SETTLED * last[N]) {
             *half_path_rms_m = sqrt((last[N] - gain) / weight);
+            *pose = p.pose;
             return is_well_inside(&p.pose);
         }
         sum_products(&p, false, sum);
         memcpy(last, sum, sizeof last);
     }
     return false;
+}
+
+bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
+                         double *half_path_rms_m)
+{
+    hf_surface_pose pose;
+    return hf_surface_pose_near(from, n, position_m, root_weight, &pose, half_path_rms_m);
+}
+
+/* ---- changes of a fit ---- */
+
+hf_surface_pose hf_surface_pose_moved(const hf_surface_pose *pose, const double step[N])
+{
+    hf_surface_pose moved = *pose;
+    take_step(&moved, step);
+    return moved;
+}
+
+/* With rows J and roots r of the weights, the step is -(J'J)^-1 J' r change. */
+double hf_surface_pose_bound(const hf_surface_pose *pose, int n, const double *position_m, const double *root_weight,
+                             const double gradient[N], double change_m)
+{
+    problem p = {*pose, n, {position_m, position_m + n, position_m + 2 * (size_t)n}, root_weight};
+    double factor[N * N], last[N + 1], row[N + 1][LANES], by[N], sum = 0;
+    int pivot[N];
+    if (!take_normal(&p, factor, pivot, last)) return (double)NAN;
+    memcpy(by, gradient, sizeof by);
+    hf_dense_solve(N, factor, pivot, 1, by);
+    for (int first = 0; first < n; first += LANES) {
+        find_rows(&p, first, row);
+        for (int k = 0; k < LANES && first + k < n; k++) {
+            double pull = 0;
+            for (int j = 0; j < N; j++)
+                pull += row[j][k] * by[j];
+            sum += (root_weight ? root_weight[first + k] : 1) * fabs(pull);
+        }
+    }
+    return sum * change_m;
 }

@@ -22,3 +22,17 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
  * *half_path_rms_m has no meaning then. */
 bool hf_surface_fit_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
                          double *half_path_rms_m);
+
+/* Finds this fit like hf_surface_fit_near, and also writes its pose. */
+bool hf_surface_pose_near(const hf_surface_pose *from, int n, const double *position_m, const double *root_weight,
+                          hf_surface_pose *pose, double *half_path_rms_m);
+
+/* Returns a pose after a step of its parameters: shifts and turns in the frame of the surface, shifts relative to the
+ * size, turns in rad, then the change of the curvature times the size. */
+hf_surface_pose hf_surface_pose_moved(const hf_surface_pose *pose, const double step[HF_FIT_N_PARAMETER]);
+
+/* Returns the maximum of gradient . step over the steps of the best fit that follow, to first order, if the half-path
+ * error of each point changes by at most change_m. pose: the best fit to these points. gradient: by the parameters of
+ * hf_surface_pose_moved. Returns NaN if the points do not determine the parameters. */
+double hf_surface_pose_bound(const hf_surface_pose *pose, int n, const double *position_m, const double *root_weight,
+                             const double gradient[HF_FIT_N_PARAMETER], double change_m);
