@@ -49,6 +49,10 @@ HF_API_BEGIN
       .description = "RMS over the facets along the normal after that fit")                                            \
     X(double, facet_fit_focal_length_m, REAL, .json = 7, .description = "focal length of that best fit")               \
     X(double, facet_area_m2, REAL, .json = 7, .description = "of the facets, projected along z")                       \
+    X(double, refocused_half_path_rms_m, REAL, .json = 7,                                                              \
+      .description = "of the facets about their mean, by illumination, after the best fit with these weights")         \
+    X(double, fixed_half_path_rms_m, REAL, .json = 7,                                                                  \
+      .description = "of the facets about their mean, by illumination; NaN without facets")                            \
     X(double, pillow_rms_m, REAL, .json = 7,                                                                           \
       .description = "of how far the mesh is from flat facets; NaN without a mesh tension")                            \
     X(double, mesh_pull_ratio, REAL, .json = 7,                                                                        \
@@ -80,13 +84,23 @@ HF_API_BEGIN
     X(int, iterations, INT, .description = "of the last fit")                                                          \
     X(bool, converged, TRUTH, .json = 5, .description = "false: all but the centre and iterations is NaN")
 
-/* Each row X(member, description) defines a list of gain losses in dB by frequency (M17). The gain losses are lists in
- * JSON and data sets in HDF5. */
+/* Each row X(member, unit, description) defines a list by frequency. The gain losses of the nodes and of the facets by
+ * Ruze's formula (M17) come first. Then follow the figures by physical optics over the facets (METHOD section 13), with a
+ * refocused feed and with a fixed feed. The lists are lists in JSON and data sets in HDF5. In files of earlier versions,
+ * missing lists are NaN. */
 #define HF_SURFACE_LOSS_LIST(X)                                                                                        \
-    X(gain_loss_dB, "loss of gain (Ruze) of the nodes by frequency; NaN beyond 3 dB, where the formula does not hold") \
-    X(fit_gain_loss_dB, "the same after the best fit")                                                                 \
-    X(facet_gain_loss_dB, "of the facets; NaN without facets")                                                         \
-    X(facet_fit_gain_loss_dB, "of the facets after their best fit")
+    X(gain_loss_dB, "dB",                                                                                              \
+      "loss of gain (Ruze) of the nodes by frequency; NaN beyond 3 dB, where the formula does not hold")               \
+    X(fit_gain_loss_dB, "dB", "the same after the best fit")                                                           \
+    X(facet_gain_loss_dB, "dB", "of the facets; NaN without facets")                                                   \
+    X(facet_fit_gain_loss_dB, "dB", "of the facets after their best fit")                                              \
+    X(refocused_gain_dBi, "dBi", "gain by physical optics with a refocused feed, in the direction of its beam")        \
+    X(refocused_gain_loss_dB, "dB", "the same, below that of the smooth target surface")                               \
+    X(refocused_ruze_loss_dB, "dB", "by Ruze's formula from refocused_half_path_rms_m; NaN beyond 3 dB")               \
+    X(fixed_gain_dBi, "dBi", "gain by physical optics with a fixed feed, in the direction of its beam")                \
+    X(fixed_gain_loss_dB, "dB", "the same, below that of the smooth target surface")                                   \
+    X(fixed_ruze_loss_dB, "dB", "by Ruze's formula from fixed_half_path_rms_m; NaN beyond 3 dB")                       \
+    X(pointing_deg, "deg", "from the beam of the fixed feed to the maximum of the main beam; NaN without a main beam")
 
 #define HF_SURFACE_MEMBER(type, member, ...) type member;
 
@@ -126,7 +140,7 @@ typedef struct {
     HF_SURFACE_LIST(HF_SURFACE_MEMBER)
     /* Contains the best fit to the inner nodes. */
     hf_surface_fit fit;
-#define HF_SURFACE_LOSS_MEMBER(member, description) double member[HF_LIST_MAX];
+#define HF_SURFACE_LOSS_MEMBER(member, unit, description) double member[HF_LIST_MAX];
     HF_SURFACE_LOSS_LIST(HF_SURFACE_LOSS_MEMBER)
 } hf_surface_measures;
 

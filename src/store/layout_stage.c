@@ -50,7 +50,7 @@ static const hf_result_field settings[] = {
         HF_LAYOUT_NAMED(hf_surface_settings, "focal_length_m", focal_length_m, REAL)
             HF_LAYOUT_NAMED(hf_surface_settings, "strip_width_m", strip_width_m, REAL)
                 HF_LAYOUT_NAMED(hf_surface_settings, "mesh_tension_N_per_m", mesh_tension_N_per_m, REAL)};
-#define LOSS(member, description) HF_LAYOUT_FIELD(hf_surface_measures, #member, member, REAL, "dB", description)
+#define LOSS(member, unit, description) HF_LAYOUT_FIELD(hf_surface_measures, #member, member, REAL, unit, description)
 static const hf_layout_field losses[] = {HF_SURFACE_LOSS_LIST(LOSS)};
 static const hf_layout_field frequency[] = {
     HF_LAYOUT_FIELD(hf_double_list, "frequency_Hz", value, REAL, "Hz", "frequencies of the gain losses")};
@@ -61,7 +61,14 @@ static void pass_measures(hf_hdf5 *io, bool writes, const char *path, int n_freq
     s->is_measured = true;
     hid_t group = hf_hdf5_make_group(io, path);
     hf_layout_pass_members(io, writes, path, hf_layout_surface, HF_LAYOUT_N_SURFACE, s);
-    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(losses), n_frequency, 0, s);
+    for (size_t k = 0; k < HF_HDF5_COUNT(losses); k++) {
+        double *list = (double *)(void *)((char *)s + losses[k].offset);
+        if (writes || hf_hdf5_has(io, group, losses[k].name))
+            hf_layout_pass_fields(io, writes, group, losses + k, 1, n_frequency, 0, s);
+        else /* an earlier version */
+            for (int i = 0; i < n_frequency; i++)
+                list[i] = (double)NAN;
+    }
     hf_hdf5_close(io, group);
 }
 

@@ -59,7 +59,7 @@ static void write_surface(const hf_summary *s, const hf_surface_measures *m, hf_
     hf_json_text(j, "kind", hf_surface_kind_word[s->surface.kind]);
     write_fields(hf_layout_surface, HF_LAYOUT_N_SURFACE, 1, LAST_PLACE, m, j);
     hf_json_list(j, "frequency_Hz", s->surface.frequencies_Hz.value, s->surface.frequencies_Hz.n);
-#define LOSS(member, description) hf_json_list(j, #member, m->member, s->surface.frequencies_Hz.n);
+#define LOSS(member, unit, description) hf_json_list(j, #member, m->member, s->surface.frequencies_Hz.n);
     HF_SURFACE_LOSS_LIST(LOSS)
     hf_json_close(j, '}');
 }

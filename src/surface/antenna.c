@@ -327,9 +327,10 @@ hf_status hf_antenna_make(const hf_surface_settings *s, const hf_facets *facets,
                           const hf_pattern_surface *design, double frequency_Hz, hf_antenna *a)
 {
     const hf_pattern_surface target = {facets, position_m, NULL};
+    hf_surface_pose pose = {0};
     double *scratch;
     void *block;
-    bool is_found;
+    bool is_found = false;
     *a = (hf_antenna){.facets = facets, .kind = s->kind, .focal_length_m = s->focal_length_m};
     hf_gain_beam_make(s, facets, position_m, frequency_Hz, &a->beam);
     a->is_too_coarse = a->beam.order >= HF_GAIN_ORDER_MOST;
@@ -347,7 +348,9 @@ hf_status hf_antenna_make(const hf_surface_settings *s, const hf_facets *facets,
         a->root_weight[i] = sqrt(fabs(hf_dot3(a->beam.co, current)));
     }
     put_points(a, design ? design : &target, q.x);
-    hf_status status = hf_antenna_fit(a, q.x, &a->start, &is_found);
+    a->start = hf_surface_pose_of_target(a->kind, a->focal_length_m, a->n_point, q.x);
+    hf_status status = hf_antenna_fit(a, q.x, &pose, &is_found);
+    if (is_found) a->start = pose;
     hf_arena_free_block(block);
     return status;
 }

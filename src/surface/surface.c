@@ -46,7 +46,7 @@ void hf_surface_blank(hf_surface_measures *of)
 #define BLANK_TRUTH(member)
 #define BLANK(type, member, kind, ...) BLANK_##kind(member)
 #define BLANK_FIT(type, member, kind, ...) BLANK_##kind(fit.member)
-#define BLANK_LOSS(member, description) of->member[k] = none;
+#define BLANK_LOSS(member, unit, description) of->member[k] = none;
     HF_SURFACE_LIST(BLANK)
     HF_SURFACE_FIT_LIST(BLANK_FIT)
     for (int k = 0; k < HF_LIST_MAX; k++) {

@@ -1,6 +1,7 @@
 /* Measures a shape as a reflector: errors at the inner nodes, best fit, facets, gain losses:
  *
- *     shape -> raw RMS errors and percentiles -> best fit to the nodes -> facets (facet_rms) -> Ruze losses
+ *     shape -> raw RMS errors and percentiles -> best fit to the nodes -> facets (facet_rms)
+ *       -> gain, loss and pointing by physical optics over the facets (antenna) -> Ruze losses
  *
  * The errors of a similar shape of the same net follow from the fits of the first one (surface_near).
  *
@@ -10,10 +11,13 @@
 #include "base/arena.h"
 #include "base/elementary.h"
 #include "net/target_surface.h"
+#include "surface/antenna.h"
 #include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+#define LONG_WAVE_M 1e4 /* wavelength for errors without a frequency; it only sets the number of quadrature points */
 
 /* ---- gain losses ---- */
 
@@ -71,6 +75,64 @@ static void measure_errors(const hf_surface_settings *s, const hf_model *m, cons
     to->half_path_rms_m = sqrt(half_path / n);
 }
 
+/* Computes the figures by physical optics of a shape at one frequency, 0: only its errors weighted by the illumination.
+ * target_m [n_node][3]: target positions. */
+static hf_status measure_antenna(const hf_surface_settings *s, const hf_pattern_surface *shape, const double *target_m,
+                                 double frequency_Hz, hf_antenna_figures *is)
+{
+    hf_antenna antenna;
+    double *scratch;
+    void *block = NULL;
+    hf_status status = hf_antenna_make(s, shape->facets, target_m, NULL,
+                                       frequency_Hz > 0 ? frequency_Hz : HF_LIGHT_M_PER_S / LONG_WAVE_M, &antenna);
+    if (status == HF_OK) status = HF_ARENA_ARRAYS(&block, HF_ARRAY(scratch, hf_antenna_scratch(&antenna)));
+    if (status == HF_OK) status = hf_antenna_measure(&antenna, shape, scratch, is);
+    hf_arena_free_block(block);
+    hf_antenna_free(&antenna);
+    return status;
+}
+
+/* Sets the figures of both feeds. They are NaN without facets, and if the mesh has no shape. */
+static hf_status measure_feeds(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
+                               const hf_facet_shape *shape, hf_surface_measures *to)
+{
+    hf_arena sags = {0};
+    hf_antenna_figures is = {0};
+    double *target_m, *sag_m = NULL, pull_ratio = 0;
+    void *block;
+    to->refocused_half_path_rms_m = to->fixed_half_path_rms_m = (double)NAN;
+    for (int k = 0; k < s->frequencies_Hz.n; k++)
+        to->refocused_gain_dBi[k] = to->refocused_gain_loss_dB[k] = to->refocused_ruze_loss_dB[k] =
+            to->fixed_gain_dBi[k] = to->fixed_gain_loss_dB[k] = to->fixed_ruze_loss_dB[k] = to->pointing_deg[k] =
+                (double)NAN;
+    if (facets->n_facet == 0) return HF_OK;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(target_m, 3 * (size_t)m->n_node)));
+    hf_model_positions(m, m->position_m, target_m);
+    hf_status status = HF_OK;
+    if (s->mesh_tension_N_per_m > 0)
+        status = hf_facet_mesh_make_sags(s->mesh_tension_N_per_m, facets, shape, &sags, &sag_m, &pull_ratio);
+    const hf_pattern_surface surface = {facets, shape->position_m, sag_m};
+    for (int k = -1; k < s->frequencies_Hz.n && status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST; k++) {
+        status = measure_antenna(s, &surface, target_m, k < 0 ? 0 : s->frequencies_Hz.value[k], &is);
+        if (status != HF_OK) break;
+        if (k < 0) {
+            to->refocused_half_path_rms_m = is.refocused.half_path_rms_m;
+            to->fixed_half_path_rms_m = is.fixed.half_path_rms_m;
+            continue;
+        }
+        to->refocused_gain_dBi[k] = is.refocused.gain_dBi;
+        to->refocused_gain_loss_dB[k] = is.refocused.gain_loss_dB;
+        to->fixed_gain_dBi[k] = is.fixed.gain_dBi;
+        to->fixed_gain_loss_dB[k] = is.fixed.gain_loss_dB;
+        to->pointing_deg[k] = is.pointing_deg;
+    }
+    note_loss(&s->frequencies_Hz, to->refocused_half_path_rms_m, to->refocused_ruze_loss_dB);
+    note_loss(&s->frequencies_Hz, to->fixed_half_path_rms_m, to->fixed_ruze_loss_dB);
+    hf_arena_free(&sags);
+    hf_arena_free_block(block);
+    return status;
+}
+
 hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *facets, const hf_model *m,
                              const double *position_m, const double *tension_N, hf_surface_measures *measures)
 {
@@ -94,6 +156,7 @@ hf_status hf_surface_measure(const hf_surface_settings *s, const hf_facets *face
     hf_status status = hf_surface_fit_points(s->kind, s->focal_length_m, (int)n, inner_m, NULL, &all.fit);
     if (status == HF_OK) status = hf_facet_shape_take(m, position_m, tension_N, &shape);
     if (status == HF_OK) status = hf_facet_measure(s, facets, &shape, &all);
+    if (status == HF_OK) status = measure_feeds(s, facets, m, &shape, &all);
     const hf_double_list *at = &s->frequencies_Hz;
     all.ruze_limit_Hz = note_loss(at, all.half_path_rms_m, all.gain_loss_dB);
     all.fit.ruze_limit_Hz = note_loss(at, all.fit.half_path_rms_m, all.fit_gain_loss_dB);

@@ -37,6 +37,25 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
     return q;
 }
 
+hf_surface_pose hf_surface_pose_of_target(hf_surface_kind kind, double focal_length_m, int n, const double *position_m)
+{
+    hf_surface_pose q = {.is_whole = true, .kind = kind, .curvature_per_m = 1 / (4 * focal_length_m)};
+    q.wanted_per_m = q.curvature_per_m;
+    for (int d = 0; d < 3; d++) { /* centre and size as in hf_surface_fit_find */
+        const double *x = position_m + (size_t)d * (size_t)n;
+        double low = x[0], high = x[0], sum = 0;
+        for (int i = 0; i < n; i++) {
+            low = fmin(low, x[i]);
+            high = fmax(high, x[i]);
+            sum += x[i];
+        }
+        q.center_m[d] = sum / n;
+        q.size_m = fmax(q.size_m, (high - low) / 2);
+        q.turn[d][d] = 1;
+    }
+    return q;
+}
+
 /* Applies a small turn and shift in the frame of the surface: p goes to E (p - center) + center + move. E is Cayley's
  * rotation (1 - [a])^-1 (1 + [a]) with a = turn/2. It agrees with the turn to second order. */
 static void move_pose(hf_surface_pose *q, const double move[3], const double turn[3])

@@ -16,6 +16,9 @@ typedef struct {
 hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, const hf_surface_fit *fit,
                                    const hf_fit_parameters *parameters);
 
+/* Returns the pose of the target surface, from which the steps to a fit to these points [3][n] can start. */
+hf_surface_pose hf_surface_pose_of_target(hf_surface_kind kind, double focal_length_m, int n, const double *position_m);
+
 /* Computes the half-path RMS in metres after the best fit to points [3][n], starting from this pose. root_weight [n]:
  * roots of the weights, or NULL if all are 1. Agrees with the reference to 1e-9 of the RMS (unit/surface/surface).
  * Returns false if the steps do not converge at once, or if they end near what the reference treats as undetermined.

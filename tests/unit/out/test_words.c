@@ -128,7 +128,7 @@ static void demand(const char *kind, const char *name)
 
 #define FIELD(type, member, kind_, ...) {.name = #member, __VA_ARGS__},
 #define FIT(type, member, kind_, ...) {.name = "fit_" #member, __VA_ARGS__},
-#define LOSS(member, text) {.name = #member},
+#define LOSS(member, unit, text) {.name = #member},
 static const hf_result_field shape[] = {HF_RESULT_LIST(FIELD)}, coupling[] = {HF_COUPLING_LIST(FIELD)},
                              form[] = {HF_SUMMARY_FORM_LIST(FIELD)}, search[] = {HF_SUMMARY_SEARCH_LIST(FIELD)},
                              refine[] = {HF_SUMMARY_REFINE_LIST(FIELD)}, load_case[] = {HF_LOAD_CASE_LIST(FIELD)},

@@ -233,7 +233,7 @@ START_TEST(surface_comes_back_bit_by_bit)
         for (size_t k = 0; (char *)(value + k) < (char *)&s->fit.iterations; k++)
             value[k] = k == 3 ? (double)NAN : rng_uniform(&rng, -1, 1);
         for (int k = 0; k < n; k++) {
-#define LOSS(member, description) s->member[k] = rng_uniform(&rng, 0, 1);
+#define LOSS(member, unit, description) s->member[k] = rng_uniform(&rng, 0, 1);
             HF_SURFACE_LOSS_LIST(LOSS)
 #undef LOSS
         }
