@@ -78,7 +78,7 @@ static hf_status read_group(hf_merged *m, hf_merged_stage stage, const char *gro
 static hf_status read_load_cases(hf_merged *m, hf_messages *messages)
 {
     static const char *const key[] = {"psi_m", "n_slack", "n_loose", "tension_max_N"};
-    static const char *const error[] = {"half_path", "gain_loss", "fit_", "facet_"};
+    static const char *const error[] = {"half_path", "gain_loss", "fit_", "facet_", "refocused", "fixed", "pointing"};
     char group[GROUP_SIZE];
     hf_texts names = {0};
     hf_status status = hf_store_read_names(m->path, "/points/load_cases", &names, messages);

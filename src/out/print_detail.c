@@ -146,6 +146,28 @@ static void print_gain(const char *words, bool is_known, double loss_dB, double 
         fprintf(f, "%s%.3g dB", words, hf_print_loss_dB(loss_dB));
 }
 
+/* Prints the figures by physical optics of one feed at frequency k, and beside them the loss by Ruze's formula. */
+static void print_feed(const char *words, double gain_dBi, double loss_dB, double rms_m, double ruze_dB, FILE *f)
+{
+    if (isnan(loss_dB)) return;
+    fprintf(f, "                  %s feed: gain %.3f dBi, loss %.3g dB; RMS by illumination %.4f mm", words, gain_dBi,
+            hf_print_loss_dB(loss_dB), rms_m * 1e3);
+    if (isfinite(ruze_dB)) fprintf(f, ", by Ruze %.3g dB", hf_print_loss_dB(ruze_dB));
+}
+
+/* Prints the figures by physical optics at frequency k, if there are any. */
+static void print_feeds(const hf_surface_measures *m, int k, FILE *f)
+{
+    if (isnan(m->fixed_gain_loss_dB[k])) return;
+    print_feed("refocused", m->refocused_gain_dBi[k], m->refocused_gain_loss_dB[k], m->refocused_half_path_rms_m,
+               m->refocused_ruze_loss_dB[k], f);
+    if (isfinite(m->refocused_gain_loss_dB[k])) fputc('\n', f);
+    print_feed("fixed", m->fixed_gain_dBi[k], m->fixed_gain_loss_dB[k], m->fixed_half_path_rms_m,
+               m->fixed_ruze_loss_dB[k], f);
+    if (isfinite(m->pointing_deg[k])) fprintf(f, "; beam off by %.5f deg", m->pointing_deg[k]);
+    fputc('\n', f);
+}
+
 /* Prints the measures of the surface of a stage, if the case measures the surface. */
 static void print_surface(const hf_summary *s, hf_stage stage, FILE *f)
 {
@@ -167,8 +189,14 @@ static void print_surface(const hf_summary *s, hf_stage stage, FILE *f)
     if (isfinite(m->faceting_rms_m)) fprintf(f, "; faceting %.4f mm", m->faceting_rms_m * 1e3);
     fputc('\n', f);
     for (int k = 0; k < s->surface.frequencies_Hz.n; k++) {
-        fprintf(f, "                gain loss at %g GHz: ", s->surface.frequencies_Hz.value[k] / 1e9);
-        print_gain("", true, m->gain_loss_dB[k], m->ruze_limit_Hz, f);
+        fprintf(f, "                gain loss at %g GHz%s:", s->surface.frequencies_Hz.value[k] / 1e9,
+                isfinite(m->fixed_gain_loss_dB[k]) ? ", physical optics" : " by Ruze");
+        if (isfinite(m->fixed_gain_loss_dB[k])) {
+            fputc('\n', f);
+            print_feeds(m, k, f);
+            continue;
+        }
+        print_gain(" ", true, m->gain_loss_dB[k], m->ruze_limit_Hz, f);
         print_gain(", after best fit ", m->fit.converged, m->fit_gain_loss_dB[k], m->fit.ruze_limit_Hz, f);
         /* Facets add an error to that of the nodes, because the mesh is flat between them. */
         print_gain("; of the facets ", isfinite(m->facet_half_path_rms_m), m->facet_gain_loss_dB[k],

@@ -115,6 +115,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
                                           {"n_slack", "slack"},
                                           {"n_loose", "loose"},
                                           {"tension_max_N", "T max"}};
+    char at[32];
     bool of_facets = !strncmp(f->key, "facet_", 6);
     const char *rest = of_facets ? f->key + 6 : f->key, *fitted = strncmp(rest, "fit_", 4) ? "" : "fitted ";
     if (*fitted) rest += 4;
@@ -126,6 +127,12 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
         char words[HF_AXIS_NAME_SIZE];
         snprintf(name, HF_AXIS_NAME_SIZE, "objective %.*s", HF_AXIS_NAME_SIZE - 11,
                  hf_print_objective_words(f->key, words));
+    } else if (sscanf(f->key, "refocused_gain_loss_at_%31s", at) == 1 ||
+               sscanf(f->key, "fixed_gain_loss_at_%31s", at) == 1) {
+        snprintf(name, HF_AXIS_NAME_SIZE, "%s loss %.*s", *f->key == 'r' ? "refocused" : "fixed feed",
+                 (int)strlen(at) - 3, at);
+    } else if (sscanf(f->key, "pointing_at_%31s", at) == 1) {
+        snprintf(name, HF_AXIS_NAME_SIZE, "fixed feed beam %.*s", (int)strlen(at) - 4, at);
     } else if (!strcmp(rest, "half_path_rms_m")) {
         snprintf(name, HF_AXIS_NAME_SIZE, "%s%s", fitted, of_facets ? "facets" : "half path");
     } else if (!strcmp(rest, "gain_loss_1dB_Hz")) {
@@ -154,6 +161,19 @@ static column figure_column(const hf_merged *m, int k)
     return c;
 }
 
+/* Returns whether the study has the gain loss by physical optics beside this figure by Ruze's formula. */
+static bool is_behind_optics(const hf_merged *m, const hf_merged_figure *f)
+{
+    if (!strstr(f->key, "gain_loss") || !strncmp(f->key, "refocused_", 10) || !strncmp(f->key, "fixed_", 6))
+        return false;
+    for (int k = 0; k < m->n_figure; k++)
+        if (m->figure[k].stage == f->stage && !strcmp(m->figure[k].load_case, f->load_case) &&
+            !strncmp(m->figure[k].key, "refocused_gain_loss_at_", 23))
+            for (int i = 0; i < m->n; i++)
+                if (isfinite(m->figure[k].value.value[i])) return true;
+    return false;
+}
+
 /* Returns whether the table has this figure of a load case. Of the surface it has the gain losses or, without
  * frequencies, the errors. */
 static bool is_shown_of_load_case(const hf_merged *m, const hf_merged_figure *f)
@@ -169,7 +189,7 @@ static bool is_shown_of_load_case(const hf_merged *m, const hf_merged_figure *f)
  * residual. */
 static bool is_shown(const hf_merged *m, const hf_merged_figure *f)
 {
-    if (f->is_psi || !strcmp(f->key, "residual_N")) return false;
+    if (f->is_psi || !strcmp(f->key, "residual_N") || is_behind_optics(m, f)) return false;
     if (f->stage == HF_MERGED_LOAD_CASES) return is_shown_of_load_case(m, f);
     if (f->stage == HF_MERGED_BUILT) return !strcmp(f->key, "psi_95_m") || !strcmp(f->key, "yield");
     return f->stage == m->main || !strcmp(f->key, "psi_m");
@@ -188,6 +208,9 @@ static int rank_of(const hf_merged *m, int k)
     if (f->stage == HF_MERGED_BUILT) return 2;
     if (strstr(f->key, "half_path_rms_m")) return is_fit ? 4 : 3;
     if (strstr(f->key, "gain_loss_1dB_Hz")) return is_fit ? 6 : 5;
+    if (!strncmp(f->key, "refocused_", 10)) return 5;
+    if (!strncmp(f->key, "fixed_", 6)) return 6;
+    if (!strncmp(f->key, "pointing_at_", 12)) return 7;
     if (strstr(f->key, "gain_loss_at_")) return is_fit ? 8 : 7;
     return strncmp(f->key, "objective_", 10) ? RANK_REST : RANK_REST - 1;
 }
@@ -219,7 +242,7 @@ static void print_figure(const hf_merged *m, const column *c, int i, char text[C
 {
     const hf_merged_figure *f = &m->figure[c->index];
     double value = c->scale * f->value.value[i];
-    bool is_loss = strstr(f->key, "gain_loss_at_") != NULL;
+    bool is_loss = strstr(f->key, "gain_loss_at_") != NULL; /* by physical optics, one without a value is unknown */
     if (!hf_merged_is_done(m, i))
         strcpy(text, "-");
     else if (isnan(value))

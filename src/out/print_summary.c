@@ -13,6 +13,7 @@
 #define OBJECTIVES_SHOWN 4     /* objectives in the first line */
 #define FREQUENCY_MOST_HZ 1e12 /* higher frequencies come from errors that are only rounding */
 #define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
+#define MORE_LOSS_DB 0.001     /* more gain loss that is worth a line */
 
 /* Returns the result of a stage, and that of the form-finding without one (HF_N_STAGE). */
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
@@ -25,42 +26,51 @@ static bool has_merit(const hf_summary *s)
     return s->objectives.n > 0 && !s->objectives.is_front;
 }
 
-/* Returns whether the case judges the surface only after its best fit, in all its requirements and objectives. */
-static bool requires_fit(const hf_summary *s)
+/* Returns the index of the highest frequency with a loss by physical optics, or -1. */
+static int highest_with_optics(const hf_summary *s, const hf_surface_measures *m)
 {
-    int n_raw = 0, n_fit = 0;
-    for (int k = 0; s->tolerance && k < s->tolerance->n_require; k++) {
-        hf_tolerance_measure measure = s->tolerance->require[k].measure;
-        if (measure <= HF_TOLERANCE_PSI || measure >= HF_TOLERANCE_PATTERN_LOSS) continue;
-        bool is_fit = strstr(hf_tolerance_measure_word[measure], "fit_") != NULL;
-        n_fit += is_fit;
-        n_raw += !is_fit;
-    }
-    for (int k = 0; k < s->objectives.n; k++) {
-        n_fit += s->objectives.after_fit[k] == 1;
-        n_raw += s->objectives.after_fit[k] == 0;
-    }
-    return n_fit > 0 && n_raw == 0;
+    const hf_double_list *at = &s->surface.frequencies_Hz;
+    int highest = -1;
+    for (int k = 0; m->is_measured && k < at->n; k++)
+        if (isfinite(m->refocused_gain_loss_dB[k]) && (highest < 0 || at->value[k] > at->value[highest])) highest = k;
+    return highest;
 }
 
-/* Prints the frequency of 1 dB gain loss. It uses the error of the facets where they are measured, otherwise that of
- * the nodes. Without a surface it uses psi, which to first order is at least the half-path RMS of the nodes (METHOD
- * section 9). The frequency after the best fit comes first where the case judges the surface only after it. */
+/* Formats a gain loss by physical optics. */
+static hf_print_text optics_text(double loss_dB, int digits)
+{
+    hf_print_text t = {"-"};
+    if (isfinite(loss_dB)) snprintf(t.text, sizeof t.text, "%.*g", digits, hf_print_loss_dB(loss_dB));
+    return t;
+}
+
+/* Prints the gain loss by physical optics at the highest frequency of the case. Without one, prints the frequency of
+ * 1 dB gain loss by Ruze's formula, from the errors of the facets where they are measured, otherwise from those of the
+ * nodes. Without a surface it uses psi, which to first order is at least the half-path RMS of the nodes (METHOD section
+ * 9). */
 static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, FILE *f)
 {
     const hf_surface_measures *m = &s->stage[stage].surface;
     bool has_facets = m->is_measured && m->n_facet > 0 && isfinite(m->facet_half_path_rms_m);
     hf_surface_errors e = {.half_path_rms_m = psi_m, .fit_half_path_rms_m = (double)NAN};
+    int k = highest_with_optics(s, m);
+    if (k >= 0) {
+        fprintf(f, "; gain loss at %g GHz %s dB for a refocused feed, %s dB for a fixed feed (physical optics)",
+                s->surface.frequencies_Hz.value[k] / 1e9, optics_text(m->refocused_gain_loss_dB[k], 3).text,
+                optics_text(m->fixed_gain_loss_dB[k], 3).text);
+        return;
+    }
     if (m->is_measured) e = hf_surface_errors_of(m, has_facets);
+    if (has_facets && isfinite(m->refocused_half_path_rms_m)) {
+        e.half_path_rms_m = m->fixed_half_path_rms_m;
+        e.fit_half_path_rms_m = m->refocused_half_path_rms_m;
+    }
     double raw_Hz = hf_surface_frequency_of_loss_Hz(e.half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
     double fit_Hz = hf_surface_frequency_of_loss_Hz(e.fit_half_path_rms_m, HF_SURFACE_GOOD_TO_DB);
     if (!(raw_Hz < FREQUENCY_MOST_HZ)) return;
-    bool has_fit = fit_Hz < FREQUENCY_MOST_HZ, fit_first = has_fit && requires_fit(s);
-    fprintf(f, "; %g dB gain loss at %.3g GHz", HF_SURFACE_GOOD_TO_DB, (fit_first ? fit_Hz : raw_Hz) / 1e9);
-    if (fit_first)
-        fprintf(f, " after best fit, at %.3g GHz for a fixed feed", raw_Hz / 1e9);
-    else if (has_fit)
-        fprintf(f, " for a fixed feed, at %.3g GHz after best fit", fit_Hz / 1e9);
+    fprintf(f, "; %g dB gain loss at ", HF_SURFACE_GOOD_TO_DB);
+    if (fit_Hz < FREQUENCY_MOST_HZ) fprintf(f, "%.3g GHz for a refocused feed, at ", fit_Hz / 1e9);
+    fprintf(f, "%.3g GHz for a fixed feed", raw_Hz / 1e9);
     fputs(has_facets       ? " (Ruze, from the facets)"
           : m->is_measured ? " (Ruze, from the nodes)"
                            : " (Ruze, from psi)",
@@ -291,6 +301,28 @@ static void print_losses(const hf_summary *s, double rms_m, const double *loss_d
         fprintf(f, "%s%s", k ? "/" : "", loss_text(rms_m, loss_dB[k], 3).text);
 }
 
+static void print_optics(const hf_summary *s, const double *loss_dB, FILE *f)
+{
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
+        fprintf(f, "%s%s", k ? "/" : "", optics_text(loss_dB[k], 3).text);
+}
+
+/* Prints the losses by physical optics, then those by Ruze's formula and the angles of the beam. */
+static void print_both_feeds(const hf_summary *s, const hf_surface_measures *m, FILE *f)
+{
+    print_optics(s, m->refocused_gain_loss_dB, f);
+    fputs(" dB for a refocused feed, ", f);
+    print_optics(s, m->fixed_gain_loss_dB, f);
+    fputs(" dB for a fixed feed (physical optics; by Ruze ", f);
+    print_losses(s, m->refocused_half_path_rms_m, m->refocused_ruze_loss_dB, f);
+    fputs(" and ", f);
+    print_losses(s, m->fixed_half_path_rms_m, m->fixed_ruze_loss_dB, f);
+    fputs(" dB); beam off by ", f);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
+        fprintf(f, "%s%s", k ? "/" : "", hf_print_decimals(m->pointing_deg[k]).text);
+    fputs(" deg for a fixed feed", f);
+}
+
 void hf_print_gain_loss(const hf_summary *s, FILE *f)
 {
     hf_stage stage = hf_store_result_stage(s);
@@ -301,28 +333,40 @@ void hf_print_gain_loss(const hf_summary *s, FILE *f)
         fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
     fputs(" GHz: ", f);
     hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
-    print_losses(s, e.half_path_rms_m, e.gain_loss_dB, f);
-    fputs(" dB for a fixed feed, ", f);
+    if (highest_with_optics(s, m) >= 0) {
+        print_both_feeds(s, m, f);
+        return;
+    }
     print_losses(s, e.fit_half_path_rms_m, e.fit_gain_loss_dB, f);
-    fputs(" dB after best fit", f);
+    fputs(" dB for a refocused feed, ", f);
+    print_losses(s, e.half_path_rms_m, e.gain_loss_dB, f);
+    fputs(" dB for a fixed feed (Ruze)", f);
 }
 
-/* Prints a line when the error after the best fit has risen in the optimisation. This happens with objectives that
- * measure the reflector for a fixed feed, not repointed and refocused. */
+/* Prints a line when the optimisation has made the reflector worse for a refocused feed: its gain loss by physical
+ * optics, or without one its error after the best fit. This happens with objectives that measure the reflector for a
+ * fixed feed, not repointed and refocused. */
 static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
 {
     const hf_surface_measures *before = &s->stage[HF_STAGE_FORM].surface, *m = &s->stage[stage].surface;
     if (stage == HF_STAGE_FORM || s->front || s->stage[HF_STAGE_FORM].result.status != HF_OK || !before->is_measured)
         return;
     bool has_facets = m->n_facet > 0;
+    int k = highest_with_optics(s, m);
     double rms_m = hf_surface_errors_of(m, has_facets).fit_half_path_rms_m,
            before_m = hf_surface_errors_of(before, has_facets).fit_half_path_rms_m;
     double before_Hz = hf_surface_frequency_of_loss_Hz(before_m, HF_SURFACE_GOOD_TO_DB);
-    if (!(before_Hz < FREQUENCY_MOST_HZ) || !(rms_m > BETTER_FIT * before_m)) return;
-    fprintf(f,
-            "                after best fit, the net of the form-finding is better: 1 dB gain loss at %.3g GHz. To "
-            "minimise this error, use {figure: %s, fit: best}\n",
-            before_Hz / 1e9, has_facets ? "facets" : "surface");
+    bool is_worse = k >= 0 ? m->refocused_gain_loss_dB[k] > before->refocused_gain_loss_dB[k] + MORE_LOSS_DB
+                           : before_Hz < FREQUENCY_MOST_HZ && rms_m > BETTER_FIT * before_m;
+    if (!is_worse) return;
+    fputs("                for a refocused feed, the net of the form-finding is better: ", f);
+    if (k >= 0)
+        fprintf(f, "gain loss %s dB at %g GHz", optics_text(before->refocused_gain_loss_dB[k], 3).text,
+                s->surface.frequencies_Hz.value[k] / 1e9);
+    else
+        fprintf(f, "%g dB gain loss at %.3g GHz", HF_SURFACE_GOOD_TO_DB, before_Hz / 1e9);
+    fprintf(f, ". To minimise this error, use {figure: %s, fit: best} and {figure: psi, weight: 0.3}\n",
+            has_facets ? "facets" : "surface");
 }
 
 /* Prints the surface errors of the nodes of the result and of its facets, if there are any, and the gain losses. */
@@ -452,24 +496,25 @@ static void print_if_finite(const char *format, double value, int width, FILE *f
         fprintf(f, "%*s", width, "-");
 }
 
-/* Prints the surface errors of a load case or, with frequencies, the gain losses at the highest one, both without and
- * with best fit. */
-static void print_load_case_surface(const hf_summary *s, const hf_surface_measures *m, FILE *f)
+/* Prints the surface errors of a load case or, with frequencies, the gain losses at the highest one, for a refocused
+ * feed and for a fixed feed. */
+static void print_load_case_surface(const hf_summary *s, const hf_surface_measures *m, bool has_optics, FILE *f)
 {
     const hf_double_list *at = &s->surface.frequencies_Hz;
-    double highest_Hz = hf_surface_highest_Hz(&s->surface);
     hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
-    for (int is_fit = 0; is_fit < 2; is_fit++) {
-        double rms_m = is_fit ? e.fit_half_path_rms_m : e.half_path_rms_m;
-        const double *loss_dB = is_fit ? e.fit_gain_loss_dB : e.gain_loss_dB;
+    int highest = 0;
+    for (int k = 1; k < at->n; k++)
+        if (at->value[k] > at->value[highest]) highest = k;
+    for (int is_fixed = 0; is_fixed < 2; is_fixed++) {
+        double rms_m = is_fixed ? e.half_path_rms_m : e.fit_half_path_rms_m;
+        const double *loss_dB = is_fixed ? e.gain_loss_dB : e.fit_gain_loss_dB;
+        const double *optics_dB = is_fixed ? m->fixed_gain_loss_dB : m->refocused_gain_loss_dB;
         if (at->n == 0) {
-            rms_m = is_fit ? (m->fit.converged ? m->fit.half_path_rms_m : (double)NAN) : m->half_path_rms_m;
+            rms_m = is_fixed ? m->half_path_rms_m : m->fit.converged ? m->fit.half_path_rms_m : (double)NAN;
             print_if_finite(" %9.4f", rms_m * 1e3, 10, f);
-        }
-        for (int k = 0; k < at->n; k++) {
-            if (at->value[k] != highest_Hz) continue;
-            fprintf(f, "%10s", loss_text(rms_m, loss_dB[k], 4).text);
-            break;
+        } else {
+            fprintf(f, "%10s",
+                    has_optics ? optics_text(optics_dB[highest], 4).text : loss_text(rms_m, loss_dB[highest], 4).text);
         }
     }
 }
@@ -478,11 +523,13 @@ static void print_load_case_surface(const hf_summary *s, const hf_surface_measur
 static void print_load_cases(const hf_summary *s, FILE *f)
 {
     bool has_surface = s->surface.focal_length_m > 0, has_truss = s->has_truss, has_loose = false;
-    bool has_loss = has_surface && s->surface.frequencies_Hz.n > 0;
+    bool has_loss = has_surface && s->surface.frequencies_Hz.n > 0, has_optics = false;
     if (s->n_load_case == 0) return;
+    for (int k = 0; k < s->n_load_case; k++)
+        has_optics |= highest_with_optics(s, &s->load_case[k].surface) >= 0;
     fprintf(f, "  load cases    %-16s %9s %15s%s %8s %9s %5s %5s%s\n", "as-built net", "psi mm", "displacement mm",
-            has_loss      ? "   loss dB  best fit"
-            : has_surface ? " half-path  best fit"
+            has_loss      ? " refocused     fixed"
+            : has_surface ? "  best fit half-path"
                           : "",
             "min N", "max N", "slack", "loose", has_truss ? " member N" : "");
     for (int k = 0; k < s->n_load_case; k++) {
@@ -496,14 +543,14 @@ static void print_load_cases(const hf_summary *s, FILE *f)
         fprintf(f, "                %-16s", load_case->name);
         print_if_finite(" %9.4f", r->psi_m * 1e3, 10, f);
         fprintf(f, " %15.4f", load_case->displacement_rms_m * 1e3);
-        if (has_surface) print_load_case_surface(s, &load_case->surface, f);
+        if (has_surface) print_load_case_surface(s, &load_case->surface, has_optics, f);
         fprintf(f, " %8.4f %9.4f %5d %5d", load_case->tension_min_N, load_case->tension_max_N, r->n_slack, r->n_loose);
         if (has_truss) fprintf(f, " %8.4g", load_case->member_force_max_N);
         fputc('\n', f);
     }
     if (has_loss)
-        fprintf(f, "                loss: gain loss at %g GHz for a fixed feed, then after best fit\n",
-                hf_surface_highest_Hz(&s->surface) / 1e9);
+        fprintf(f, "                gain loss in dB at %g GHz for a refocused feed and for a fixed feed (%s)\n",
+                hf_surface_highest_Hz(&s->surface) / 1e9, has_optics ? "physical optics" : "Ruze");
     if (has_loose)
         fputs("                psi leaves out the loose nodes; the other columns include them where they hang\n", f);
 }

@@ -75,7 +75,7 @@ static int print_objectives(const hf_summary *s, int stage, char *text, size_t s
 }
 
 /* Writes the surface errors of a shape: "facet_half_path_rms_m=0.001 facet_gain_loss_1dB_Hz=3e9
- * facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=...". before: prefix of each name, of a load case its
+ * facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=... refocused_gain_loss_at_2.5_GHz_dB=0.1". before: prefix of each name, of a load case its
  * name and a dot. Returns the length. */
 static int print_errors(const hf_double_list *at, const hf_surface_measures *m, const char *before, char *text,
                         size_t size)
@@ -95,6 +95,12 @@ static int print_errors(const hf_double_list *at, const hf_surface_measures *m, 
             used += (size_t)snprintf(text + used, size - used, " %sgain_loss_at_%.9g_GHz_dB=%.17g", kind,
                                      at->value[k] / 1e9, loss_dB[k]);
     }
+    for (int k = 0; m->n_facet > 0 && k < at->n && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used,
+                                 " %srefocused_gain_loss_at_%.9g_GHz_dB=%.17g %sfixed_gain_loss_at_%.9g_GHz_dB=%.17g "
+                                 "%spointing_at_%.9g_GHz_deg=%.17g",
+                                 before, at->value[k] / 1e9, m->refocused_gain_loss_dB[k], before, at->value[k] / 1e9,
+                                 m->fixed_gain_loss_dB[k], before, at->value[k] / 1e9, m->pointing_deg[k]);
     return (int)used;
 }
 
@@ -167,8 +173,8 @@ bool hf_ledger_next_value(int list, const char **text, char name[HF_OBJECTIVE_NA
 
 const char *hf_ledger_unit(const char *name)
 {
-    static const char *const unit[][2] = {{"_N_per_m", "N/m"}, {"_kg", "kg"}, {"_N", "N"},
-                                          {"_m", "m"},         {"_Hz", "Hz"}, {"_dB", "dB"}};
+    static const char *const unit[][2] = {{"_N_per_m", "N/m"}, {"_kg", "kg"}, {"_N", "N"},    {"_m", "m"},
+                                          {"_Hz", "Hz"},       {"_dB", "dB"}, {"_deg", "deg"}};
     size_t n = strlen(name);
     if (!strncmp(name, "objective_", 10)) return hf_ledger_objective_unit(name);
     for (int i = 0; i < HF_HDF5_COUNT(unit); i++)

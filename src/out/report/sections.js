@@ -287,7 +287,10 @@ const RMS_OF_LOSS = {
   fit_gain_loss_dB: "fit_half_path_rms_m",
   facet_gain_loss_dB: "facet_half_path_rms_m",
   facet_fit_gain_loss_dB: "facet_fit_half_path_rms_m",
+  refocused_ruze_loss_dB: "refocused_half_path_rms_m",
+  fixed_ruze_loss_dB: "fixed_half_path_rms_m",
 };
+const OPTICS = ["refocused_gain_loss_dB", "fixed_gain_loss_dB", "refocused_gain_dBi", "fixed_gain_dBi", "pointing_deg"];
 
 // Returns all figures of a stage by their keys, with those of the surface, objectives and gain losses. The key of a
 // gain loss contains the index of its frequency in frequency_Hz, by default the stage's own.
@@ -301,6 +304,10 @@ function stageValues(stage, frequency_Hz) {
     (surface[loss] || []).forEach((v, k) => {
       const index = all_Hz.indexOf(own_Hz[k]);
       values[`${loss}[${index}]`] = v === null && surface[rms] !== null ? "above 3" : v;
+    });
+  for (const name of OPTICS)
+    (surface[name] || []).forEach((v, k) => {
+      values[`${name}[${all_Hz.indexOf(own_Hz[k])}]`] = v;
     });
   return values;
 }
@@ -339,7 +346,16 @@ function figureRows(first) {
     ["deviation, 95th percentile", "mm", "deviation_p95_m", mm],
     ["deviation, 99th percentile", "mm", "deviation_p99_m", mm],
     ["deviation, maximum", "mm", "deviation_max_m", mm],
+    ["RMS of the facets by illumination, refocused feed", "mm", "refocused_half_path_rms_m", mm],
+    ["RMS of the facets by illumination, fixed feed", "mm", "fixed_half_path_rms_m", mm],
     ...frequencies.flatMap((at, k) => [
+      [`gain loss at ${at}, refocused feed (physical optics)`, "dB", `refocused_gain_loss_dB[${k}]`, loss],
+      [`gain loss at ${at}, refocused feed (Ruze)`, "dB", `refocused_ruze_loss_dB[${k}]`, loss],
+      [`gain loss at ${at}, fixed feed (physical optics)`, "dB", `fixed_gain_loss_dB[${k}]`, loss],
+      [`gain loss at ${at}, fixed feed (Ruze)`, "dB", `fixed_ruze_loss_dB[${k}]`, loss],
+      [`gain at ${at}, refocused feed`, "dBi", `refocused_gain_dBi[${k}]`, (v) => rounded(v, 5)],
+      [`gain at ${at}, fixed feed`, "dBi", `fixed_gain_dBi[${k}]`, (v) => rounded(v, 5)],
+      [`angle of the beam at ${at}, fixed feed`, "deg", `pointing_deg[${k}]`, (v) => rounded(v, 3)],
       [`gain loss at ${at}`, "dB", `gain_loss_dB[${k}]`, loss],
       [`gain loss at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, loss],
       [`gain loss of the facets at ${at}`, "dB", `facet_gain_loss_dB[${k}]`, loss],
