@@ -101,18 +101,52 @@ static double gain_dBi(const hf_antenna *a, const hf_antenna_points *q)
     return gain > 1e-300 ? HF_DB_PER_LN * hf_logarithm(gain) : (double)NAN;
 }
 
-hf_feed hf_antenna_refocus(const hf_antenna *a, const hf_surface_pose *pose)
+/* Computes the mean of the points, weighted by their illumination at the target positions. */
+static void find_middle(const hf_antenna *a, const double *x, double middle_m[3])
 {
-    hf_feed feed = a->beam.feed;
-    feed.position_m[2] += 1 / (4 * pose->curvature_per_m) - a->focal_length_m;
-    return feed;
+    const size_t n = (size_t)a->n_point;
+    double all = 0, sum[3] = {0};
+    for (size_t i = 0; i < n; i++) {
+        double weight = a->root_weight[i] * a->root_weight[i];
+        all += weight;
+        for (size_t d = 0; d < 3; d++)
+            sum[d] += weight * x[d * n + i];
+    }
+    for (int d = 0; d < 3; d++)
+        middle_m[d] = sum[d] / all;
 }
 
-double hf_antenna_refocused_dBi(const hf_antenna *a, const hf_surface_pose *pose, hf_antenna_points *q)
+/* Turns the axis of a feed towards a point that has moved by move_m, as seen from the feed. */
+static void aim(const hf_antenna *a, const double move_m[3], hf_feed *feed)
 {
-    hf_feed feed = hf_antenna_refocus(a, pose);
+    double axis[3], along, part;
+    for (int d = 0; d < 3; d++)
+        axis[d] = a->middle_m[d] - a->beam.feed.position_m[d];
+    along = hf_dot3(axis, feed->axis);
+    for (int d = 0; d < 3; d++)
+        axis[d] = along * feed->axis[d] + move_m[d];
+    if (feed->kind == HF_FEED_LINE) axis[1] = 0;
+    double size = hf_norm(axis[0], axis[1], axis[2]);
+    for (int d = 0; d < 3; d++)
+        feed->axis[d] = axis[d] / size;
+    if (feed->kind == HF_FEED_LINE) return;
+    part = hf_dot3(feed->co, feed->axis);
+    for (int d = 0; d < 3; d++)
+        feed->co[d] = (feed->co[d] - part * feed->axis[d]) / sqrt(1 - part * part);
+}
+
+double hf_antenna_refocused_dBi(const hf_antenna *a, const hf_surface_pose *pose, const double *beside_m,
+                                hf_antenna_points *q, hf_feed *feed)
+{
+    double middle_m[3], longer_m = 1 / (4 * pose->curvature_per_m) - a->focal_length_m;
+    *feed = a->beam.feed;
     turn_points(pose, (size_t)a->n_point, q->x);
-    hf_antenna_light(a, &feed, q);
+    find_middle(a, q->x, middle_m);
+    for (int d = 0; d < 3; d++)
+        middle_m[d] += (beside_m ? beside_m[d] : 0) - a->middle_m[d] - (d == 2 ? longer_m : 0);
+    feed->position_m[2] += longer_m;
+    if (feed->kind != HF_FEED_PLANE_WAVE) aim(a, middle_m, feed);
+    hf_antenna_light(a, feed, q);
     return gain_dBi(a, q);
 }
 
@@ -307,6 +341,7 @@ hf_status hf_antenna_measure(const hf_antenna *a, const hf_pattern_surface *shap
                              hf_antenna_figures *to)
 {
     hf_surface_pose pose;
+    hf_feed feed;
     bool is_found;
     hf_antenna_blank(to);
     if (a->is_too_coarse) return HF_OK;
@@ -316,7 +351,7 @@ hf_status hf_antenna_measure(const hf_antenna *a, const hf_pattern_surface *shap
     judge(a, &q, 1 / (4 * a->focal_length_m), &to->fixed);
     to->pointing_deg = pointing_deg(a, &q);
     if (!is_found) return HF_OK;
-    hf_antenna_refocused_dBi(a, &pose, &q);
+    hf_antenna_refocused_dBi(a, &pose, NULL, &q, &feed);
     judge(a, &q, pose.curvature_per_m, &to->refocused);
     return HF_OK;
 }
@@ -347,6 +382,7 @@ hf_status hf_antenna_make(const hf_surface_settings *s, const hf_facets *facets,
         const double current[3] = {q.current[i], q.current[n + i], q.current[2 * n + i]};
         a->root_weight[i] = sqrt(fabs(hf_dot3(a->beam.co, current)));
     }
+    find_middle(a, q.x, a->middle_m);
     put_points(a, design ? design : &target, q.x);
     a->start = hf_surface_pose_of_target(a->kind, a->focal_length_m, a->n_point, q.x);
     hf_status status = hf_antenna_fit(a, q.x, &pose, &is_found);

@@ -2,7 +2,9 @@
  *
  * Two feeds illuminate each shape. The fixed feed is that of the target surface. The refocused feed is the fixed feed,
  * moved rigidly with the best-fit surface of the shape, and along the axis of this surface by the change of the focal
- * length. The best fit weights the points by their illumination. */
+ * length. It is aimed at the same part of the reflector. This matters where a shift and a turn of the fit nearly cancel,
+ * so that errors of the shape decide how far the fit goes along both. The best fit weights the points by their
+ * illumination. */
 #pragma once
 
 #include "surface/gain.h"
@@ -17,6 +19,7 @@ typedef struct {
     bool is_too_coarse;    /* true: HF_GAIN_TOO_COARSE, so all figures are NaN */
     int n_point;           /* quadrature points of all facets */
     double *root_weight;   /* [n_point] root of the current of each point at the target positions */
+    double middle_m[3];    /* weighted mean of the points of the target surface */
     double smooth_dBi;     /* gain of the target surface over the same area, with the fixed feed */
     hf_surface_pose start; /* best fit from which those of similar shapes start */
     void *block;           /* owned memory behind the array */
@@ -81,11 +84,10 @@ hf_antenna_points hf_antenna_points_of(const hf_antenna *antenna, const hf_patte
 /* Computes the currents of the points and their sums. */
 void hf_antenna_light(const hf_antenna *antenna, const hf_feed *feed, hf_antenna_points *points);
 
-/* Returns the refocused feed in the frame of the best fit. */
-hf_feed hf_antenna_refocus(const hf_antenna *antenna, const hf_surface_pose *pose);
-
-/* Turns the points into the frame of a best fit and illuminates them with the refocused feed. Returns the gain, dBi. */
-double hf_antenna_refocused_dBi(const hf_antenna *antenna, const hf_surface_pose *pose, hf_antenna_points *points);
+/* Turns the points into the frame of a best fit and illuminates them with the refocused feed, in this frame. Returns the
+ * gain, dBi. beside_m [3], or NULL: the feed is aimed beside its aim by this vector. */
+double hf_antenna_refocused_dBi(const hf_antenna *antenna, const hf_surface_pose *pose, const double *beside_m,
+                                hf_antenna_points *points, hf_feed *feed);
 
 /* Finds the weighted best fit to points x [3][n_point]. Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_antenna_fit(const hf_antenna *antenna, const double *x, hf_surface_pose *pose, bool *is_found);

@@ -86,24 +86,32 @@ static double bound_gain_dB(const moves *b, const hf_feed *feed, const hf_antenn
     return 2 * HF_DB_PER_LN * sum / size;
 }
 
-/* Returns the bound of the change of the gain by the best fit, which follows the points. x: points in the frame of the
- * net. */
+/* Returns the change of the refocused gain for a step of parameter k of the fit, or of the aim of the feed along k - 6,
+ * over the step. x: points in the frame of the net. */
+static double rate_of_gain(const moves *b, const double *x, const hf_surface_pose *pose, int k, hf_antenna_points *q)
+{
+    double gain_dBi[2];
+    hf_feed feed;
+    for (int side = 0; side < 2; side++) {
+        double step[HF_FIT_N_PARAMETER + 3] = {0};
+        step[k] = side ? FIT_STEP : -FIT_STEP;
+        hf_surface_pose moved = hf_surface_pose_moved(pose, step);
+        memcpy(b->moved, x, 6 * (size_t)b->a->n_point * sizeof *x);
+        hf_antenna_points at = {.x = b->moved, .current = q->current, .path_m = q->path_m};
+        gain_dBi[side] = hf_antenna_refocused_dBi(b->a, &moved, step + HF_FIT_N_PARAMETER, &at, &feed);
+    }
+    return (gain_dBi[1] - gain_dBi[0]) / (2 * FIT_STEP);
+}
+
+/* Returns the bound of the change of the gain by the best fit and by the aim of the feed, which follow the points. */
 static double bound_refocusing_dB(const moves *b, const double *x, const hf_surface_pose *pose, hf_antenna_points *q)
 {
-    const size_t n = (size_t)b->a->n_point;
-    double gradient[HF_FIT_N_PARAMETER];
-    for (int k = 0; k < HF_FIT_N_PARAMETER; k++) {
-        double gain_dBi[2], step[HF_FIT_N_PARAMETER] = {0};
-        for (int side = 0; side < 2; side++) {
-            step[k] = side ? FIT_STEP : -FIT_STEP;
-            hf_surface_pose moved = hf_surface_pose_moved(pose, step);
-            memcpy(b->moved, x, 6 * n * sizeof *x);
-            hf_antenna_points at = {.x = b->moved, .current = q->current, .path_m = q->path_m};
-            gain_dBi[side] = hf_antenna_refocused_dBi(b->a, &moved, &at);
-        }
-        gradient[k] = (gain_dBi[1] - gain_dBi[0]) / (2 * FIT_STEP);
-    }
-    return hf_surface_pose_bound(pose, (int)n, x, b->a->root_weight, gradient, b->delta_m);
+    double gradient[HF_FIT_N_PARAMETER + 3];
+    for (int k = 0; k < HF_FIT_N_PARAMETER + 3; k++)
+        gradient[k] = rate_of_gain(b, x, pose, k, q);
+    const double *by_aim = gradient + HF_FIT_N_PARAMETER;
+    return hf_surface_pose_bound(pose, b->a->n_point, x, b->a->root_weight, gradient, b->delta_m) +
+           sqrt(hf_dot3(by_aim, by_aim)) * b->delta_m;
 }
 
 /* ---- spread ---- */
@@ -182,9 +190,9 @@ hf_status hf_antenna_bound(const hf_antenna *a, const hf_pattern_surface *shape,
     to->pointing_deg = bound_pointing_deg(&b, &q);
     if (status == HF_OK) status = hf_antenna_fit(a, x, &pose, &is_found);
     if (status == HF_OK && is_found && pose.is_whole) {
-        hf_feed feed = hf_antenna_refocus(a, &pose);
+        hf_feed feed;
         double more_dB = bound_refocusing_dB(&b, x, &pose, &q);
-        hf_antenna_refocused_dBi(a, &pose, &q);
+        hf_antenna_refocused_dBi(a, &pose, NULL, &q, &feed);
         bound_spread(&b, pose.curvature_per_m, q.x, is.refocused.half_path_rms_m, &to->refocused);
         to->refocused.gain_dBi = to->refocused.gain_loss_dB = bound_gain_dB(&b, &feed, &q) + more_dB;
     }

@@ -83,6 +83,7 @@ void bench_single(const char *scene, const char *folder);
 void bench_equilibrium(const char *net, const char *folder);
 void bench_built(const char *sigma_mm, const char *folder);
 void bench_pattern(const char *to_deg, const char *folder);
+void bench_antenna(const char *what, const char *folder); /* Ruze's formula beside physical optics; antenna.csv */
 void bench_growth(const char *scale, const char *folder);
 void bench_population(const char *scene, const char *folder);
 void bench_lanes(const char *scene, const char *folder);

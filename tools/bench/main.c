@@ -80,13 +80,14 @@ typedef struct {
     void (*run)(const char *what, const char *folder);
 } section;
 
-static const section section_table[] = {{"step", bench_step},     {"peak", bench_peak},
-                                        {"phases", bench_phases}, {"precision", bench_precision},
-                                        {"single", bench_single}, {"equilibrium", bench_equilibrium},
-                                        {"growth", bench_growth}, {"population", bench_population},
-                                        {"whole", bench_whole},   {"frame", bench_frame},
-                                        {"lanes", bench_lanes},   {"cases", bench_cases},
-                                        {"built", bench_built},   {"pattern", bench_pattern}};
+static const section section_table[] = {{"step", bench_step},      {"peak", bench_peak},
+                                        {"phases", bench_phases},  {"precision", bench_precision},
+                                        {"single", bench_single},  {"equilibrium", bench_equilibrium},
+                                        {"growth", bench_growth},  {"population", bench_population},
+                                        {"whole", bench_whole},    {"frame", bench_frame},
+                                        {"lanes", bench_lanes},    {"cases", bench_cases},
+                                        {"built", bench_built},    {"pattern", bench_pattern},
+                                        {"antenna", bench_antenna}};
 
 int main(int argc, char **argv)
 {
