@@ -129,6 +129,7 @@ static hf_status measure_pattern(hf_run *r, hf_stage stage, const hf_workspace *
 
 /* ---- measures ---- */
 
+#define RUZE_OFF_DB 0.1     /* difference of losses that causes a warning */
 #define MESH_PULL_DOUBT 0.3 /* N l / T above which the figures of the facets cause a warning */
 
 /* Sets the minimum and maximum tension and their ratio for the named sets of cables, up to HF_SUMMARY_SETS of them. */
@@ -176,6 +177,26 @@ static hf_status measure_limits(const hf_problem *p, const hf_workspace *w, hf_s
     return HF_OK;
 }
 
+/* Warns if Ruze's formula is off by more than RUZE_OFF_DB at a frequency where physical optics loses at most
+ * HF_SURFACE_GOOD_TO_DB. */
+static void doubt_ruze(const hf_surface_settings *s, const hf_surface_measures *m, hf_stage stage,
+                       hf_messages *messages)
+{
+    for (int k = 0; k < 2 * s->frequencies_Hz.n; k++) {
+        bool is_fixed = k % 2;
+        double loss_dB = (is_fixed ? m->fixed_gain_loss_dB : m->refocused_gain_loss_dB)[k / 2];
+        double ruze_dB = hf_surface_ruze_dB(is_fixed ? m->fixed_half_path_rms_m : m->refocused_half_path_rms_m,
+                                            s->frequencies_Hz.value[k / 2]);
+        if (!(loss_dB <= HF_SURFACE_GOOD_TO_DB) || !(fabs(ruze_dB - loss_dB) > RUZE_OFF_DB)) continue;
+        hf_warning(
+            messages,
+            "surface: Ruze's formula differs from physical optics by %.2g dB here: at %g GHz, with a %s feed, the "
+            "shape of stage %s loses %.3g dB, but Ruze's formula gives %.3g dB. Use the loss by physical optics",
+            fabs(ruze_dB - loss_dB), s->frequencies_Hz.value[k / 2] / 1e9, is_fixed ? "fixed" : "refocused",
+            hf_stage_word[stage], loss_dB, ruze_dB);
+    }
+}
+
 hf_status hf_stage_measure(hf_run *r, hf_stage stage, const hf_workspace *w, hf_summary *s, hf_messages *messages)
 {
     const hf_problem *p = &r->problem;
@@ -189,6 +210,7 @@ hf_status hf_stage_measure(hf_run *r, hf_stage stage, const hf_workspace *w, hf_
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the surface errors");
     if (isnan(hf_metrics_psi_m(&p->model, w))) hf_surface_blank(measures);
     const hf_surface_fit *fit = &measures->fit;
+    doubt_ruze(&p->surface, measures, stage, messages);
     if (measures->mesh_pull_ratio > MESH_PULL_DOUBT)
         hf_warning(messages,
                    "surface: in the shape of stage %s, the mesh pulls on %s. hifdm computes the pillows to first order "

@@ -177,7 +177,7 @@ START_TEST(a_mesh_without_shape_is_not_exported)
                                           "{n_theta: 11, feed: {cos_power: 1}}}\n"),
           "-o", out);
     ERR("so hifdm reports neither facet errors nor a far field");
-    OUT("gain loss at 10 GHz: - dB for a fixed feed, - dB after best fit");
+    OUT("gain loss at 10 GHz: - dB for a refocused feed, - dB for a fixed feed (Ruze)");
     HIFDM(2, "export", out, "--rf", rf);
     ERR("pillows of the form-finding shape are unknown, because the mesh pulls on a cable");
     ck_assert(!is_there(rf));

@@ -169,16 +169,21 @@ START_TEST(summary_begins_with_the_answer)
 }
 END_TEST
 
-/* By its facets where a surface is wanted, and after the best fit, both by Ruze's formula. */
+/* By its facets where a surface is wanted, with both feeds: by physical optics at the highest frequency, without
+ * frequencies by Ruze's formula from the errors weighted by the illumination. */
 START_TEST(surface_says_what_a_reflector_is_good_to)
 {
     const char *out = temp("r.h5");
     HIFDM(0, "run", REFLECTOR, "-o", out);
     EXPECT(file_with("said.txt", said.out), out, "--",
-           "('; 1 dB gain loss at %.3g GHz for a fixed feed, at %.3g GHz after best fit (Ruze, from the facets)' % "
-           "tuple(np.sqrt(np.log(10) / 10) * "
-           "299792458 / (4e9 * np.pi * b['surface/form'].attrs[n + 'half_path_rms_m']) for n in ('facet_', "
-           "'facet_fit_'))).encode() in a.splitlines()[0]");
+           "('; gain loss at 9.6 GHz %.3g dB for a refocused feed, %.3g dB for a fixed feed (physical optics)' % "
+           "tuple(b['surface/form'][n + '_gain_loss_dB'][1] for n in ('refocused', 'fixed'))).encode() in "
+           "a.splitlines()[0]");
+    HIFDM(0, "run", REFLECTOR, "-o", out, "--force", "--set", "surface.frequencies_Hz=[]");
+    EXPECT(file_with("said.txt", said.out), out, "--",
+           "('; 1 dB gain loss at %.3g GHz for a refocused feed, at %.3g GHz for a fixed feed (Ruze, from the facets)' "
+           "% tuple(np.sqrt(np.log(10) / 10) * 299792458 / (4e9 * np.pi * b['surface/form'].attrs[n + "
+           "'_half_path_rms_m']) for n in ('refocused', 'fixed'))).encode() in a.splitlines()[0]");
 }
 END_TEST
 

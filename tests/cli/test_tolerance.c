@@ -118,7 +118,7 @@ START_TEST(samples_tell_each_loss_of_gain)
         "len({a['tolerance/sample'][p + 'gain_loss_dB'][0] for p in ['', 'fit_', 'facet_', 'facet_fit_']}) == 4");
     EXPECT(path, "--", "np.isfinite(a['tolerance/psi_by_cut'][:]).all()");
     HIFDM(0, "show", path); /* what is required stands first */
-    OUT(" GHz for a fixed feed (Ruze, from the facets)\n");
+    OUT(" dB for a fixed feed (physical optics)\n");
     HIFDM(0, "tolerance",
           file_with("e.yaml", "scene:\n  EA_inner_N: 5e3\n  EA_boundary_N: 1e4\n  paraboloid: {aperture_m: 4, "
                               "focal_length_m: 3, rings: 2, rear_distance_m: 1.8}\nform: {prestress: exact}\n"
@@ -139,7 +139,7 @@ START_TEST(samples_tell_each_loss_of_gain)
           "tolerance.require=[{measure: facet_gain_loss_dB, at_most: 1}]");
     ck_assert_ptr_null(strstr(said.err, "counts the nodes only"));
     HIFDM(0, "show", path);
-    OUT(" GHz after best fit (Ruze, from the facets)\n");
+    OUT(" dB for a fixed feed (physical optics)\n");
 }
 END_TEST
 

@@ -3,6 +3,7 @@
 
     pattern_oracle.py field RESULT CSV      /pattern/form of RESULT, from the facets in the folder CSV
     pattern_oracle.py points RESULT RF      the same from RF/points.csv alone, and the content of RF/
+    pattern_oracle.py antenna RESULT CSV    gain, loss, pointing and weighted errors of /surface/form, with both feeds
 
 `field` sums the currents 2 n x H over 18 x 18 points of Gauss-Legendre on each facet, and computes the feed again from
 the target positions. `points` does what a physical-optics program would do with the points, each of which stands for an
@@ -76,11 +77,8 @@ def read(path):
         return list(csv.DictReader(line for line in f if not line.startswith("#")))
 
 
-def field(result, folder):
-    nodes = read(f"{folder}/nodes.csv")
-    place = {n["id"]: k for k, n in enumerate(nodes)}
-    x = np.array([[float(n[c]) for c in ("x_m", "y_m", "z_m")] for n in nodes])
-    corners = np.array([[place[r[c] or r["c"]] for c in "abcd"] for r in read(f"{folder}/facets.csv")])
+def grid_of(x, corners):
+    """Returns 18 x 18 points of each facet with their vectors of area."""
     a, w = np.polynomial.legendre.leggauss(18)
     a, w = (a + 1) / 2, w / 2
     u, v = [g.ravel() for g in np.meshgrid(a, a)]
@@ -90,9 +88,105 @@ def field(result, folder):
     p = (1 - v) * ((1 - u) * A + u * B) + v * ((1 - u) * E + u * D)
     du, dv = (1 - v) * (B - A) + v * (D - E), (1 - u) * (E - A) + u * (D - B)
     area = np.cross(du, dv) * weight[None, :, None]
+    return p.reshape(-1, 3), area.reshape(-1, 3)
+
+
+def facets_in(folder):
+    nodes = read(f"{folder}/nodes.csv")
+    place = {n["id"]: k for k, n in enumerate(nodes)}
+    x = np.array([[float(n[c]) for c in ("x_m", "y_m", "z_m")] for n in nodes])
+    return x, np.array([[place[r[c] or r["c"]] for c in "abcd"] for r in read(f"{folder}/facets.csv")])
+
+
+def field(result, folder):
+    x, corners = facets_in(folder)
+    p, area = grid_of(x, corners)
     with h5py.File(result) as h5:
         f = h5["surface"].attrs["focal_length_m"]
-        compare("facets", h5, feed_of(h5, corners, f), p.reshape(-1, 3), area.reshape(-1, 3), 1e-10)
+        compare("facets", h5, feed_of(h5, corners, f), p, area, 1e-10)
+
+
+Z = np.array([0, 0, 1.0])
+
+
+def gain(feed, wavelength, p, area, s=Z):
+    """Returns the gain in the direction s, in the polarisation along x by Ludwig's third definition, dBi."""
+    N, scale = far_field(feed, wavelength, p, area, [s])
+    return 10 * np.log10(scale * abs(N[0] @ (np.eye(3)[0] - s[0] / (1 + s[2]) * (s + Z))) ** 2)
+
+
+def half_path(p, f):
+    t2 = (p[:, 0] ** 2 + p[:, 1] ** 2) / (4 * f * f)
+    return (p[:, 2] - t2 * f) / (1 + t2)
+
+
+def frame(p, area, middle, q):
+    """Returns the points in the frame of a fitted surface: turns q[0:2] about x, then y; shift q[2:5]."""
+    (cx, sx), (cy, sy) = [(np.cos(a), np.sin(a)) for a in q[:2]]
+    R = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]]) @ np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    return (p - middle - q[2:5]) @ R + middle, area @ R
+
+
+def spread(e, w):
+    return np.sqrt(w @ e**2 / w.sum() - (w @ e / w.sum()) ** 2)
+
+
+def beam_of(feed, wavelength, p, area):
+    """Returns the direction of the maximum, by parabolas through 9 directions around the best one so far."""
+    best = np.zeros(2)
+    for step in 1e-3 * 0.3 ** np.arange(12):
+        a = np.array([[i, j] for i in (-1, 0, 1) for j in (-1, 0, 1)]) * step + best
+        g = [gain(feed, wavelength, p, area, np.append(q, np.sqrt(1 - q @ q))) for q in a]
+        d = a - best
+        A = np.stack([np.ones(9), d[:, 0], d[:, 1], d[:, 0] ** 2, d[:, 0] * d[:, 1], d[:, 1] ** 2], axis=1)
+        c = np.linalg.lstsq(A / [1, step, step, step**2, step**2, step**2], g, rcond=None)[0]
+        c /= [1, step, step, step**2, step**2, step**2]
+        best = best - np.linalg.solve([[2 * c[3], c[4]], [c[4], 2 * c[5]]], c[1:3])
+        if step < 1e-5:
+            return best
+    return best
+
+
+def antenna(result, folder):
+    x, corners = facets_in(folder)
+    p, area = grid_of(x, corners)
+    with h5py.File(result) as h5:
+        f, g = h5["surface"].attrs["focal_length_m"], h5["surface/form"]
+        feed = feed_of(h5, corners, f)
+        smooth, below = grid_of(h5["scene/node/position_m"][:], corners)
+        below[:, :2] = -smooth[:, :2] / (2 * f) * below[:, 2:]
+        smooth[:, 2] = (smooth[:, :2] ** 2).sum(axis=1) / (4 * f)
+        to = smooth - feed[0]
+        rho = np.linalg.norm(to, axis=1)
+        to /= rho[:, None]
+        e = feed[2] - ((to @ feed[2]) / (1 + to @ feed[1]))[:, None] * (feed[1] + to)
+        w = np.abs(np.cross(below, np.cross(to, e) * ((to @ feed[1]) ** feed[3] / rho)[:, None])[:, 0])
+        middle, q = p.mean(axis=0), np.zeros(6)  # turns, shift, focal length
+        errors = lambda q: half_path(frame(p, area, middle, q)[0], f + q[5])
+        for _ in range(30):  # lengths of a shift across and a turn are nearly the same: the steps are damped a little
+            r = errors(q)
+            J = np.stack([(errors(q + d) - errors(q - d)) / 2e-6 for d in 1e-6 * np.eye(6)], axis=1)
+            q = q - np.linalg.lstsq(np.sqrt(w)[:, None] * J, np.sqrt(w) * r, rcond=1e-13)[0]
+        there, turned = frame(p, area, middle, q)
+        focus = feed[0] + q[5] * Z
+        axis = feed[1] * (((w @ smooth) / w.sum() - feed[0]) @ feed[1]) + (w @ (there - smooth)) / w.sum() - q[5] * Z
+        axis /= np.linalg.norm(axis)
+        co = feed[2] - (feed[2] @ axis) * axis
+        refocused = (focus, axis, co / np.linalg.norm(co), feed[3])
+        worst = np.zeros(3)
+        for k, frequency in enumerate(h5["surface/frequency_Hz"][:]):
+            wave = C / frequency
+            ideal = gain(feed, wave, smooth, below)
+            for name, mine in (("fixed", gain(feed, wave, p, area)), ("refocused", gain(refocused, wave, there, turned))):
+                off = [mine - g[name + "_gain_dBi"][k], ideal - mine - g[name + "_gain_loss_dB"][k]]
+                worst[0] = max(worst[0], np.abs(off).max())
+            worst[1] = max(worst[1], abs(np.degrees(np.linalg.norm(beam_of(feed, wave, p, area))) - g["pointing_deg"][k]))
+        rms = [spread(half_path(p, f), w), spread(errors(q), w)]
+        stored = [g.attrs[n + "_half_path_rms_m"] for n in ("fixed", "refocused")]
+        worst[2] = np.abs(np.array(rms) / stored - 1).max()
+        print(f"antenna: gains differ by {worst[0]:.1e} dB, pointing by {worst[1]:.1e} deg, errors by {worst[2]:.1e}")
+        if not (worst < [1e-5, 1e-5, 1e-5]).all():
+            sys.exit(1)
 
 
 def points(result, folder):
@@ -148,4 +242,4 @@ def check_grid(z, x, y, tri, f, bent):
 
 
 if __name__ == "__main__":
-    {"field": field, "points": points}[sys.argv[1]](sys.argv[2], sys.argv[3])
+    {"field": field, "points": points, "antenna": antenna}[sys.argv[1]](sys.argv[2], sys.argv[3])

@@ -123,7 +123,7 @@ START_TEST(all_load_cases_come_back)
     }
     ck_assert_int_eq(n_psi, HF_LOAD_CASES_MAX - 1);
     ck_assert_int_eq(n_none, 1); /* without a shape */
-    ck_assert_int_eq(n, HF_LOAD_CASES_MAX * (4 + 2 * (2 + HF_LIST_MAX)));
+    ck_assert_int_eq(n, HF_LOAD_CASES_MAX * (4 + 2 * (2 + HF_LIST_MAX) + 3 * HF_LIST_MAX));
     hf_points_free(&points);
     hf_study_free(&s);
     hf_summary_free(summary);
