@@ -251,12 +251,13 @@ literal: setup ## the paper's literal evaluation of an individual beside the def
 
 # Peers that cannot be installed are left out of the tables. BENCH_OUT=... writes to another folder, in which each
 # processor has a folder.
-bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/PROCESSOR (4 minutes)
+bench: ## benchmark against LAPACK, CHOLMOD and scipy: tables and figures in results/bench/PROCESSOR (5 minutes)
 	$(Q)tools/setup.sh --bench || tools/setup.sh
 	$(SUB) $(PROGRAM) $(SHARED) $(BENCH)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/bench/run.py --driver $(BENCH) --program $(PROGRAM) --work $(BUILD)/bench --out $(BENCH_OUT) \
 	    --rounds $(BENCH_ROUNDS) --flags $(call quote,$(COMPILER); $(CFLAGS) $(LANGUAGE) $(CODEGEN))
+	$(BENCH) antenna $(BUILD)/bench | tee $(BENCH_OUT)/antenna.txt
 	HIFDM_LIBRARY=$(abspath $(SHARED)) PYTHONPATH=tools/python PYTHONDONTWRITEBYTECODE=1 \
 	    $(PYTHON) tools/bench/python_batch.py --program $(PROGRAM) --work $(BUILD)/bench
 

@@ -85,9 +85,9 @@ HF_API_BEGIN
     X(bool, converged, TRUTH, .json = 5, .description = "false: all but the centre and iterations is NaN")
 
 /* Each row X(member, unit, description) defines a list by frequency. The gain losses of the nodes and of the facets by
- * Ruze's formula (M17) come first. Then follow the figures by physical optics over the facets (METHOD section 13), with a
- * refocused feed and with a fixed feed. The lists are lists in JSON and data sets in HDF5. In files of earlier versions,
- * missing lists are NaN. */
+ * Ruze's formula (M17) come first. Then follow the figures by physical optics over the facets (METHOD section 13), with
+ * a refocused feed and with a fixed feed. The lists are lists in JSON and data sets in HDF5. Lists that a file of an
+ * earlier version does not contain are NaN. */
 #define HF_SURFACE_LOSS_LIST(X)                                                                                        \
     X(gain_loss_dB, "dB",                                                                                              \
       "loss of gain (Ruze) of the nodes by frequency; NaN beyond 3 dB, where the formula does not hold")               \

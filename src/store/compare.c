@@ -239,6 +239,15 @@ static bool is_second(const comparing *q, const char *path)
     return q->are_results && !strncmp(path, "/VTKHDF/", 8);
 }
 
+/* Returns true for the figures of both feeds of a surface, which earlier versions did not compute. They count only
+ * where both files have them. */
+static bool is_later(const comparing *q, const char *path)
+{
+    const char *name = strrchr(path, '/');
+    return q->are_results && strstr(path, "/surface") && name &&
+           (!strncmp(name, "/refocused_", 11) || !strncmp(name, "/fixed_", 7) || !strcmp(name, "/pointing_deg"));
+}
+
 /* Notes the name of a data set in the second file if that has names of version 0.2. */
 static void note_found(comparing *q, const char *path)
 {
@@ -257,8 +266,10 @@ static void visit_first(void *context, const char *path, hid_t object, H5I_type_
     comparing *q = context;
     (void)object;
     if (type != H5I_DATASET || is_second(q, path)) return;
+    bool is_there = has_data_set(q->second, path);
+    if (!is_there && is_later(q, path)) return;
     q->c->n_data_set++;
-    if (has_data_set(q->second, path)) {
+    if (is_there) {
         note_found(q, path);
         q->c->n_different += compare_data_set(q, path);
     } else if (q->second->status == HF_OK) {
@@ -274,7 +285,7 @@ static void visit_second(void *context, const char *path, hid_t object, H5I_type
     if (type != H5I_DATASET || is_second(q, path)) return;
     if (hf_text_index(path, (const char *const *)q->found, q->n_found) >= 0) return;
     bool is_old = q->second->alias && !q->first->alias; /* `first` has links of these names */
-    if (!is_old && has_data_set(q->first, path)) return;
+    if ((!is_old && has_data_set(q->first, path)) || is_later(q, path)) return;
     q->c->n_data_set++;
     tell_absent(q, path, q->first);
     if (q->second->status == HF_OK) q->second->status = q->first->status;

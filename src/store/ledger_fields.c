@@ -75,8 +75,8 @@ static int print_objectives(const hf_summary *s, int stage, char *text, size_t s
 }
 
 /* Writes the surface errors of a shape: "facet_half_path_rms_m=0.001 facet_gain_loss_1dB_Hz=3e9
- * facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=... refocused_gain_loss_at_2.5_GHz_dB=0.1". before: prefix of each name, of a load case its
- * name and a dot. Returns the length. */
+ * facet_gain_loss_at_2.5_GHz_dB=0.1 facet_fit_half_path_rms_m=... refocused_gain_loss_at_2.5_GHz_dB=0.1".
+ * before: prefix of each name, of a load case its name and a dot. Returns the length. */
 static int print_errors(const hf_double_list *at, const hf_surface_measures *m, const char *before, char *text,
                         size_t size)
 {

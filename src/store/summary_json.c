@@ -6,6 +6,7 @@
 #include "store/layout.h"
 
 #include <math.h>
+#include <string.h>
 
 /* ---- figures by the lists ---- */
 
@@ -215,6 +216,22 @@ static void write_load_cases(const hf_summary *s, hf_json *j)
     hf_json_close(j, '}');
 }
 
+/* Returns the figures of a measure with NaN for infinite gain losses, which are those beyond Ruze's formula. */
+static hf_tolerance_figures known_figures(const hf_tolerance_figures *f, const char *measure)
+{
+    hf_tolerance_figures known = *f;
+    double *value[] = {&known.min, &known.max};
+    if (!strstr(measure, "loss_dB")) return known;
+    for (int k = 0; k < 2; k++)
+        if (isinf(*value[k])) *value[k] = (double)NAN;
+    for (int k = 0; k < HF_TOLERANCE_QUANTILES; k++) {
+        if (isinf(known.value[k])) known.value[k] = (double)NAN;
+        if (isinf(known.low[k])) known.low[k] = (double)NAN;
+        if (isinf(known.high[k])) known.high[k] = (double)NAN;
+    }
+    return known;
+}
+
 static void write_figures(const hf_tolerance_figures *f, const char *measure, hf_json *j)
 {
     hf_json_open_line(j, "  ", measure, '{');
@@ -304,7 +321,10 @@ static void write_tolerance(const hf_summary *s, hf_json *j)
     write_part(s, HF_LAYOUT_TOLERANCE, j);
     hf_json_list(j, "quantiles", hf_tolerance_quantile, HF_TOLERANCE_QUANTILES);
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++)
-        if (t->figure[k].is_measured) write_figures(&t->figure[k], hf_tolerance_measure_word[k], j);
+        if (t->figure[k].is_measured) {
+            const hf_tolerance_figures known = known_figures(&t->figure[k], hf_tolerance_measure_word[k]);
+            write_figures(&known, hf_tolerance_measure_word[k], j);
+        }
     write_requirements(t, j);
     write_shares(t, j);
     hf_json_list(j, "histogram_range_m", (const double[]){t->bin_low_m, t->bin_high_m}, 2);

@@ -2,8 +2,8 @@
  *
  * Two feeds illuminate each shape. The fixed feed is that of the target surface. The refocused feed is the fixed feed,
  * moved rigidly with the best-fit surface of the shape, and along the axis of this surface by the change of the focal
- * length. It is aimed at the same part of the reflector. This matters where a shift and a turn of the fit nearly cancel,
- * so that errors of the shape decide how far the fit goes along both. The best fit weights the points by their
+ * length. It is aimed at the same part of the reflector. This matters where a shift and a turn of the fit nearly
+ * cancel, so that errors of the shape decide how far the fit goes along both. The best fit weights the points by their
  * illumination. */
 #pragma once
 
@@ -84,8 +84,8 @@ hf_antenna_points hf_antenna_points_of(const hf_antenna *antenna, const hf_patte
 /* Computes the currents of the points and their sums. */
 void hf_antenna_light(const hf_antenna *antenna, const hf_feed *feed, hf_antenna_points *points);
 
-/* Turns the points into the frame of a best fit and illuminates them with the refocused feed, in this frame. Returns the
- * gain, dBi. beside_m [3], or NULL: the feed is aimed beside its aim by this vector. */
+/* Turns the points into the frame of a best fit and illuminates them with the refocused feed, in this frame. Returns
+ * the gain, dBi. beside_m [3], or NULL: the feed is aimed beside its aim by this vector. */
 double hf_antenna_refocused_dBi(const hf_antenna *antenna, const hf_surface_pose *pose, const double *beside_m,
                                 hf_antenna_points *points, hf_feed *feed);
 

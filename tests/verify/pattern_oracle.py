@@ -177,10 +177,12 @@ def antenna(result, folder):
         for k, frequency in enumerate(h5["surface/frequency_Hz"][:]):
             wave = C / frequency
             ideal = gain(feed, wave, smooth, below)
-            for name, mine in (("fixed", gain(feed, wave, p, area)), ("refocused", gain(refocused, wave, there, turned))):
+            both = {"fixed": gain(feed, wave, p, area), "refocused": gain(refocused, wave, there, turned)}
+            for name, mine in both.items():
                 off = [mine - g[name + "_gain_dBi"][k], ideal - mine - g[name + "_gain_loss_dB"][k]]
                 worst[0] = max(worst[0], np.abs(off).max())
-            worst[1] = max(worst[1], abs(np.degrees(np.linalg.norm(beam_of(feed, wave, p, area))) - g["pointing_deg"][k]))
+            beam_deg = np.degrees(np.linalg.norm(beam_of(feed, wave, p, area)))
+            worst[1] = max(worst[1], abs(beam_deg - g["pointing_deg"][k]))
         rms = [spread(half_path(p, f), w), spread(errors(q), w)]
         stored = [g.attrs[n + "_half_path_rms_m"] for n in ("fixed", "refocused")]
         worst[2] = np.abs(np.array(rms) / stored - 1).max()

@@ -1,6 +1,6 @@
 /* Ruze's formula beside physical optics (METHOD section 13): 30 generated dishes and cylinders with facets of several
- * sizes, deflected by heat and by moved rims, and as built with errors of cut lengths, up to 1 dB of loss. Prints a line
- * for each net and writes each shape to antenna.csv. */
+ * sizes, deflected by heat and by moved rims, and as built with errors of cut lengths, up to 1 dB of loss. Prints a
+ * line for each net and writes each shape to antenna.csv. */
 #include "bench.h"
 
 #include "surface/antenna.h"

@@ -71,8 +71,14 @@ function figureWords({ key, objective: objectiveWords }) {
   const feed = key.match(/^(refocused|fixed)_gain_loss_at_(.*)_GHz_dB$/),
     beam = key.match(/^pointing_at_(.*)_GHz_deg$/);
   if (feed)
-    return [`Gain loss at ${feed[2]} GHz, ${feed[1]} feed`, "loss", feed[1] === "fixed" ? 6 : 5, `Loss at ${feed[2]} GHz, ${feed[1]} feed`];
-  if (beam) return [`Angle of the beam at ${beam[1]} GHz, fixed feed`, "angle", 7, `Beam at ${beam[1]} GHz, fixed feed`];
+    return [
+      `Gain loss at ${feed[2]} GHz, ${feed[1]} feed`,
+      "loss",
+      feed[1] === "fixed" ? 6 : 5,
+      `Loss at ${feed[2]} GHz, ${feed[1]} feed`,
+    ];
+  if (beam)
+    return [`Angle of the beam at ${beam[1]} GHz, fixed feed`, "angle", 7, `Beam at ${beam[1]} GHz, fixed feed`];
   if (loss) return [`Gain loss at ${loss[1]} GHz${after}`, "loss", fit ? 8 : 7, `Gain loss at ${loss[1]} GHz${fitted}`];
   if (objective) return [`Objective ${objective}`, objective, 9, `Objective ${objective}`];
   if (key === "inner_tension_ratio")
