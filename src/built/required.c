@@ -255,18 +255,20 @@ void hf_required_measure(const hf_required *q, bool is_many, int state, const hf
 /* ---- error bounds ---- */
 
 /* Returns a bound on the error of the tension of cable e. Two ends that are off by bound_m each change its length by at
- * most twice as much. The tension of a cable of law length follows from the shape in no such simple way. */
+ * most twice as much. The tension of a cable of law length follows from the shape in no such simple way. A search and a
+ * load case change the target values of the model, so the cable has those of the workspace. */
 static double tension_error_N(const hf_model *m, const hf_required_shape *s, int e, double bound_m)
 {
     double off_m = 2 * bound_m, unit[3];
-    switch ((hf_law)m->law[e]) {
+    hf_law_cable cable = hf_workspace_cable(m, s->work, e);
+    switch (cable.law) {
     case HF_LAW_TENSION:
-        return fabs(s->tension_N[e] - m->target[e]);
+        return fabs(s->tension_N[e] - cable.target);
     case HF_LAW_FORCE_DENSITY:
-        return fabs(s->tension_N[e] - m->target[e] * hf_newton_matrix_direction(m, s->position_m, e, unit)) +
-               fabs(m->target[e]) * off_m;
+        return fabs(s->tension_N[e] - cable.target * hf_newton_matrix_direction(m, s->position_m, e, unit)) +
+               fabs(cable.target) * off_m;
     case HF_LAW_ELASTIC:
-        return m->EA_N[e] / m->target[e] * off_m;
+        return cable.EA_N / cable.target * off_m;
     default:
         return (double)NAN;
     }

@@ -9,6 +9,7 @@
 
 #include <hifdm/load_cases.h>
 #include <hifdm/requirements.h>
+#include <hifdm/workspace.h>
 #include "surface/surface_measure.h"
 
 enum { HF_REQUIRED_COLUMNS = 2 * HF_REQUIREMENT_ROWS_MAX, HF_REQUIRED_STATES = 1 + HF_LOAD_CASES_MAX };
@@ -62,7 +63,8 @@ typedef struct {
     const double *displacement_m; /* [3 n_attachment] displacements of the attachments by the forces of the net */
     const unsigned char *loose;   /* [n_node] nodes that psi leaves out; NULL: none */
     int n_loose;
-    hf_surface_paths paths; /* errors of the surface; NaN if no column needs them */
+    hf_surface_paths paths;   /* errors of the surface; NaN if no column needs them */
+    const hf_workspace *work; /* laws and target values in effect, for error bounds; may be NULL without them */
 } hf_required_shape;
 
 /* Returns the figure of a column for a shape. *item becomes the cable or support with this value, or stays. */

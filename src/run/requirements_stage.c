@@ -104,7 +104,8 @@ void hf_requirements_stage_take(hf_requirements_stage *q, int state, const hf_mo
                                .displacement_m = w->displacement_m,
                                .loose = r->n_loose ? w->loose : NULL,
                                .n_loose = r->n_loose,
-                               .paths = {NAN, NAN, NAN, NAN}};
+                               .paths = {NAN, NAN, NAN, NAN},
+                               .work = w};
     if (!(of->nominal >> state & 1u)) return;
     if (s->is_measured) {
         double fit_m = s->fit.converged ? s->fit.half_path_rms_m : (double)NAN;
