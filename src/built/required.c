@@ -141,9 +141,10 @@ static double extreme_N(const hf_required_column *c, const hf_required_shape *s,
     return worst_N;
 }
 
+/* As hf_metrics_is_slack: a strut has a negative tension and is not slack. */
 static bool is_slack(const hf_required_shape *s, int e)
 {
-    return s->tension_N[e] < HF_SLACK_RATIO * s->model->reference_N;
+    return fabs(s->tension_N[e]) < HF_SLACK_RATIO * s->model->reference_N;
 }
 
 static double count_slack(const hf_required_column *c, const hf_required_shape *s, double *item)
@@ -154,10 +155,12 @@ static double count_slack(const hf_required_column *c, const hf_required_shape *
     return n;
 }
 
-/* Returns the ratio of maximum to minimum tension, INFINITY with a slack cable. *item is the cable of the minimum. */
+/* Returns the ratio of maximum to minimum tension, INFINITY with a slack cable, NaN with a strut. *item is the cable of
+ * the minimum. */
 static double ratio_of(const hf_required_column *c, const hf_required_shape *s, double *item)
 {
     double at_most, least_N = extreme_N(c, s, true, item), most_N = extreme_N(c, s, false, &at_most);
+    if (least_N < 0 && !is_slack(s, (int)*item)) return (double)NAN;
     return is_slack(s, (int)*item) ? (double)INFINITY : most_N / least_N;
 }
 
