@@ -289,7 +289,21 @@ static double set_error_N(const hf_required_column *c, const hf_required_shape *
     return most_N;
 }
 
-/* Bounds the error of the force on support `row`. Besides its tension, the direction of a cable may be off. */
+/* Returns the number of cables of which the error of the tension decides whether they are slack, NaN if one has no
+ * bound. */
+static double count_doubtful(const hf_required_column *c, const hf_required_shape *s, double bound_m)
+{
+    int n = 0;
+    for (int i = 0; i < c->n_cable; i++) {
+        double error_N = tension_error_N(s->model, s, c->cable[i], bound_m);
+        if (isnan(error_N)) return error_N;
+        n += fabs(fabs(s->tension_N[c->cable[i]]) - HF_SLACK_RATIO * s->model->reference_N) < error_N;
+    }
+    return n;
+}
+
+/* Bounds the error of the force on support `row`. Besides its tension, the direction of a cable may be off. NaN if a
+ * tension has no bound. */
 static double pull_error_N(const hf_required_shape *s, int row, double bound_m)
 {
     const hf_model *m = s->model;
@@ -297,15 +311,32 @@ static double pull_error_N(const hf_required_shape *s, int row, double bound_m)
     for (int e = 0; e < m->n_cable; e++)
         if (m->end_row[2 * e] == row || m->end_row[2 * e + 1] == row)
             sum_N += tension_error_N(m, s, e, bound_m) +
-                     2 * bound_m * s->tension_N[e] / hf_newton_matrix_direction(m, s->position_m, e, unit);
+                     2 * bound_m * fabs(s->tension_N[e]) / hf_newton_matrix_direction(m, s->position_m, e, unit);
     return sum_N;
+}
+
+/* Bounds the error of the mass. The length of a cable may be off, and the tension by which it is longer than
+ * unstressed. */
+static double mass_error_kg(const hf_required *q, const hf_required_column *c, const hf_required_shape *s,
+                            double bound_m)
+{
+    double sum_kg = 0, unit[3];
+    for (int i = 0; i < c->n_cable; i++) {
+        int e = c->cable[i];
+        double EA_N = q->scene->EA_N ? q->scene->EA_N[e] : 0, off_m = 2 * bound_m;
+        if (EA_N > 0)
+            off_m += hf_newton_matrix_direction(s->model, s->position_m, e, unit) *
+                     tension_error_N(s->model, s, e, bound_m) / EA_N;
+        sum_kg += off_m * q->mass_kg_per_m[e];
+    }
+    return sum_kg;
 }
 
 static double error_of(const hf_required *q, const hf_required_column *c, const hf_required_shape *s, double bound_m,
                        double value)
 {
     const hf_model *m = s->model;
-    double error_N, least_N, at, mass_kg_per_m = 0;
+    double error_N, least_N, most_N, at;
     switch (c->figure) {
     case HF_REQUIRED_PSI: /* an RMS is a norm, which changes by at most the norm of the change; a best fit lowers it */
     case HF_REQUIRED_SURFACE:
@@ -318,22 +349,19 @@ static double error_of(const hf_required *q, const hf_required_column *c, const 
         error_N = set_error_N(c, s, bound_m);
         least_N = extreme_N(c, s, true, &at);
         return error_N < least_N ? (value + 1) * error_N / (least_N - error_N) : (double)NAN;
-    case HF_REQUIRED_SLACK: /* a count is exact unless a tension is within its error of the limit */
-        error_N = set_error_N(c, s, bound_m);
-        for (int i = 0; i < c->n_cable; i++)
-            if (!(fabs(s->tension_N[c->cable[i]] - HF_SLACK_RATIO * m->reference_N) > error_N)) return (double)NAN;
-        return 0;
+    case HF_REQUIRED_SLACK: /* a cable whose tension is within its error of the limit may count or not */
+        return count_doubtful(c, s, bound_m);
     case HF_REQUIRED_LOOSE:
         return 0;
     case HF_REQUIRED_PULL:
-        least_N = 0;
-        for (int row = m->n_free; row < m->n_node; row++)
-            least_N = fmax(least_N, pull_error_N(s, row, bound_m));
-        return isnan(bound_m) ? (double)NAN : least_N;
+        most_N = 0;
+        for (int row = m->n_free; row < m->n_node && !isnan(most_N); row++) {
+            error_N = pull_error_N(s, row, bound_m);
+            if (!(error_N <= most_N)) most_N = error_N;
+        }
+        return most_N;
     case HF_REQUIRED_MASS:
-        for (int i = 0; i < c->n_cable; i++)
-            mass_kg_per_m += q->mass_kg_per_m[c->cable[i]];
-        return 2 * bound_m * mass_kg_per_m;
+        return mass_error_kg(q, c, s, bound_m);
     case HF_REQUIRED_N_FIGURE:
         break;
     }
