@@ -89,13 +89,15 @@ static void check_share(const hf_case *c, int i, const hf_requirement_settings *
     }
 }
 
+/* Returns whether two rows bound the same figure of the same cables. An empty set stands for all cables. */
 static bool is_same_quantity(const hf_requirement_settings *a, const hf_requirement_settings *b)
 {
-    return a->figure == b->figure && !strcmp(a->set, b->set) && a->feed == b->feed &&
-           !strcmp(a->load_case, b->load_case);
+    const char *of_a = *a->set ? a->set : "all", *of_b = *b->set ? b->set : "all";
+    return a->figure == b->figure && !strcmp(of_a, of_b) && a->feed == b->feed;
 }
 
-/* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. */
+/* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. A row with a
+ * share of 0 requires nothing, so it contradicts no row. */
 static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
 {
     const hf_requirement_settings *r = &c->requirement[i];
@@ -104,13 +106,16 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
     bounds_of(r, mine);
     for (int k = 0; k < i; k++) {
         const hf_requirement_settings *q = &c->requirement[k];
-        bool is_same_share = r->share == q->share || (isnan(r->share) && isnan(q->share));
+        bool is_same_share = r->share == q->share || (isnan(r->share) && isnan(q->share)),
+             is_same_case = !strcmp(r->load_case, q->load_case),
+             overlaps = is_same_case || !strcmp(r->load_case, "all") || !strcmp(q->load_case, "all");
         bounds_of(q, other);
-        if (!is_same_quantity(r, q)) continue;
-        if (is_same_share && ((isfinite(mine[0]) && isfinite(other[0])) || (isfinite(mine[1]) && isfinite(other[1])))) {
+        if (!is_same_quantity(r, q) || !overlaps) continue;
+        if (is_same_case && is_same_share &&
+            ((isfinite(mine[0]) && isfinite(other[0])) || (isfinite(mine[1]) && isfinite(other[1])))) {
             snprintf(what, sizeof what, "is required by row %d already; keep one of the rows", k);
             hf_config_fault_in_row(f, list, i, "figure", what);
-        } else if (mine[0] > other[1] || mine[1] < other[0]) {
+        } else if (r->share != 0 && q->share != 0 && (mine[0] > other[1] || mine[1] < other[0])) {
             snprintf(what, sizeof what, "contradicts row %d: no value meets both rows", k);
             hf_config_fault_in_row(f, list, i, "figure", what);
         }
