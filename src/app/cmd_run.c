@@ -22,11 +22,13 @@ static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 
 static hf_status judge_strictly(const hf_summary *s, hf_messages *messages)
 {
-    int n = 0;
-    for (int i = 0; i < s->n_requirement; i++)
+    int n = 0, n_judged = 0;
+    for (int i = 0; i < s->n_requirement; i++) {
         n += s->requirement[i].verdict == HF_VERDICT_FAIL;
+        n_judged += s->requirement[i].verdict != HF_VERDICT_NONE;
+    }
     if (n == 0) return HF_OK;
-    return hf_error(messages, HF_REQUIREMENT_FAILED, "the result fails %d of %d requirements", n, s->n_requirement);
+    return hf_error(messages, HF_REQUIREMENT_FAILED, "the result fails %d of %d requirements", n, n_judged);
 }
 
 static hf_status check_more(const hf_options *o, hf_messages *messages)

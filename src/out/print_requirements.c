@@ -41,7 +41,7 @@ static const char *value_text(hf_required_figure figure, double value, char text
     if (isfinite(value))
         snprintf(text, CELL, "%.4g%s%s", times * value, *unit ? " " : "", unit);
     else
-        snprintf(text, CELL, "%s", isnan(value) ? "-" : "none");
+        snprintf(text, CELL, "%s", isnan(value) ? "-" : "infinite");
     return text;
 }
 
