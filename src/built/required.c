@@ -398,10 +398,11 @@ double hf_required_margin(const hf_required *q, int i, const double *value, size
 
 /* ---- verdicts ---- */
 
-/* Returns the id of the cable or support that `item` of a column stands for, "" for none. */
+/* Returns the id of the cable or support that `item` of a column stands for, "" for none. The item of a net without a
+ * shape is NaN. */
 static const char *id_of(const hf_required *q, int column, double item)
 {
-    if (item < 0) return "";
+    if (!(item >= 0)) return "";
     return has_set(q->column[column].figure) ? q->scene->cable_id[(int)item] : q->scene->node_id[(int)item];
 }
 
