@@ -1,0 +1,463 @@
+/* Requirements of a case: what a row must give, the verdicts that a run prints and stores, the option --strict, and
+ * results that do not depend on threads, tasks and interruptions. */
+#include "session.h"
+
+#define BUILT_SCENE SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n"
+#define TOLERANCE "tolerance: {sigma_cut_m: 1e-4, samples: %d}\n"
+#define LOADS                                                                                                          \
+    "cables: [{expansion_per_K: 1e-5, mass_kg_per_m: 1e-3}]\nload_cases:\n  - {name: cold, temperature_K: -20}\n"      \
+    "  - {name: windy, force_N: [0, 0, -1], role: inner}\n"
+#define ROWS "requirements:\n"
+
+/* ---- faults ---- */
+
+/* The rows begin in line 6. */
+START_TEST(faults_are_named)
+{
+#define LOADED "load_cases: [{name: cold, temperature_K: 5}]\ncables: [{expansion_per_K: 0, mass_kg_per_m: 1e-3}]\n"
+#define SAMPLES "tolerance: {sigma_cut_m: 1e-4, samples: 100}\n"
+    static const char *const fault[][2] = {
+        {"  - {figure: psi}\n", "6:14: requirements.0.figure: has no bound; give at_most, at_least or within"},
+        {"  - {at_most: 1}\n", "6:5: requirements.0.figure: is missing"},
+        {"  - {figure: tensoin, at_least: 1}\n", "6:14: requirements.0.figure: must be one of psi surface facets "},
+        {"  - {figure: tension, at_leat: 1}\n", "6:23: at_leat: unknown key; did you mean 'at_least'?"},
+        {"  - {figure: tension, at_least: .nan}\n", "6:33: requirements.0.at_least: must be a finite number"},
+        {"  - {figure: tension, at_least: 5, at_most: 2}\n", "6:33: requirements.0.at_least: must not be above at_most"},
+        {"  - {figure: tension, within: [5, 2]}\n",
+         "6:31: requirements.0.within: the lower bound must be below the upper one"},
+        {"  - {figure: tension, within: [1, 2], at_most: 3}\n",
+         "6:31: requirements.0.within: replaces at_least and at_most; keep one of them"},
+        {"  - {figure: psi, at_most: -1e-3}\n",
+         "6:28: requirements.0.at_most: is below 0, which no net can reach"},
+        {"  - {figure: ratio, at_most: 0.5}\n",
+         "6:30: requirements.0.at_most: is below 1, the ratio of equal tensions"},
+        {"  - {figure: psi, at_most: 1, set: inner}\n",
+         "6:36: requirements.0.set: has no meaning for psi, only for tension, ratio, slack_cables, mass"},
+        {"  - {figure: tension, at_least: 1, feed: fixed}\n",
+         "6:42: requirements.0.feed: has no meaning for tension, only for surface, facets"},
+        {"  - {figure: tension, at_least: 1, set: innr}\n",
+         "6:41: requirements.0.set: this net has no cable set 'innr'; did you mean 'inner'?"},
+        {"  - {figure: tension, at_least: 1, load_case: cold}\n",
+         "6:47: requirements.0.load_case: needs load cases; add rows to `load_cases`, or remove this key"},
+        {"  - {figure: tension, at_least: 1, load_case: all}\n", "6:47: requirements.0.load_case: needs load cases"},
+        {"  - {figure: tension, at_least: 1, load_case: clod}\n" LOADED,
+         "6:47: requirements.0.load_case: is neither nominal, all nor a load case of `load_cases`; did you mean "
+         "'cold'?"},
+        {"  - {figure: tension, at_least: 1, load_case: xyzzy}\n" LOADED,
+         "6:47: requirements.0.load_case: is neither nominal, all nor a load case of `load_cases`, whose first is "
+         "'cold'"},
+        {"  - {figure: tension, at_least: 1, load_case: cold}\nload_cases: [{name: cold, temperature_K: 5}]\n",
+         "7:42: load_cases.0.temperature_K: 58 cables have no thermal expansion coefficient"},
+        {"  - {figure: surface, at_most: 1}\n", "6:14: requirements.0.figure: is not measured; add a section surface"},
+        {"  - {figure: facets, at_most: 1}\n", "6:14: requirements.0.figure: is not measured; add a section surface"},
+        {"  - {figure: deflection, at_most: 1}\n", "6:14: requirements.0.figure: needs a section truss"},
+        {"  - {figure: mass, at_most: 1}\n", "6:14: requirements.0.figure: 58 cables have no mass per length, such as '"},
+        {"  - {figure: mass, at_most: 1, share: 0.5}\n" SAMPLES,
+         "6:39: requirements.0.share: has no meaning for mass, which neither loads nor errors change"},
+        {"  - {figure: mass, at_most: 1, load_case: cold}\n" LOADED,
+         "6:43: requirements.0.load_case: has no meaning for mass"},
+        {"  - {figure: tension, at_least: 1, share: 0.9}\n",
+         "6:43: requirements.0.share: needs a section tolerance, which defines the as-built samples"},
+        {"  - {figure: tension, at_least: 1, share: 0.99}\n" SAMPLES,
+         "6:43: requirements.0.share: cannot be decided by 100 samples; set tolerance.samples to at least 368"},
+        {"  - {figure: tension, at_least: 1, share: 1}\n" SAMPLES,
+         "6:43: requirements.0.share: cannot be 1: no number of samples shows that all nets pass"},
+        {"  - {figure: tension, at_least: 1, share: 1.5}\n" SAMPLES,
+         "6:43: requirements.0.share: must be at least 0 and at most 1"},
+        {"  - {figure: tension, at_least: 1}\n  - {figure: tension, at_least: 2}\n",
+         "7:14: requirements.1.figure: is required by row 0 already; keep one of the rows"},
+        {"  - {figure: tension, at_least: 5}\n  - {figure: tension, set: all, at_most: 2}\n",
+         "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},
+        {"  - {figure: psi, at_most: 1}\n  - {figure: psi, at_least: 2, load_case: all}\n" LOADED,
+         "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},
+    };
+    for (size_t k = 0; k < sizeof fault / sizeof *fault; k++) {
+        const char *c = file_with("f.yaml", formatted(BUILT_SCENE ROWS "%s", fault[k][0]));
+        HIFDM(2, "check", c);
+        ERRS("f.yaml:%s", fault[k][1]);
+        ck_assert_msg(count_of(said.err, "error: ") == 1, "%s", said.err);
+        HIFDM(2, "run", c, NOWHERE);
+        ERRS("f.yaml:%s", fault[k][1]);
+    }
+    file_with("n.csv", "id,x_m,y_m,z_m,role\na,-1,0,0,support\nb,1,0,0,support\nm,0,0.1,0,inner\n");
+    file_with("e.csv", "id,i,j,group,law,value,EA_N\np,a,m,inner,force_density,10,2000\nq,b,m,inner,force_density,10,"
+                       "2000\n");
+    HIFDM(2, "run",
+          file_with("f.yaml", "scene:\n  import: {nodes: n.csv, cables: e.csv}\n"
+                              "surface: {kind: paraboloid, focal_length_m: 2}\n"
+                              "requirements: [{figure: facets, at_most: 1}]\n"),
+          NOWHERE);
+    ERR("f.yaml:4:25: requirements.0.figure: this net has no facets. To bound the errors of the nodes, use the figure "
+        "surface");
+    ck_assert(!is_there(temp("nowhere.h5")));
+}
+END_TEST
+
+/* Rows that look alike and still are different requirements. */
+START_TEST(rows_that_differ_are_accepted)
+{
+    HIFDM(0, "check",
+          file_with("c.yaml", formatted(BUILT_SCENE TOLERANCE LOADS ROWS
+                                        "  - {figure: tension, at_least: 1}\n"
+                                        "  - {figure: tension, at_most: 90}\n"
+                                        "  - {figure: tension, at_least: 1, set: inner}\n"
+                                        "  - {figure: tension, at_least: 2, share: 0.9}\n"
+                                        "  - {figure: tension, at_least: 3, share: 0.5}\n"
+                                        "  - {figure: tension, at_most: 0.5, share: 0}\n"
+                                        "  - {figure: tension, at_least: 2, load_case: all}\n"
+                                        "  - {figure: tension, at_least: 2, load_case: cold}\n",
+                                        100)));
+    OUT("valid");
+}
+END_TEST
+
+/* ---- verdicts ---- */
+
+#define MIXED                                                                                                          \
+    "surface: {}\n" LOADS ROWS "  - {figure: tension, set: boundary, at_least: 1, load_case: all}\n"                   \
+    "  - {figure: tension, within: [0.1, 500], load_case: all, share: 0.95}\n"                                          \
+    "  - {figure: ratio, set: inner, at_most: 30, share: 0.5}\n"                                                       \
+    "  - {figure: slack_cables, at_most: 3, load_case: cold, share: 0.5}\n"                                            \
+    "  - {figure: loose_nodes, at_most: 0, load_case: windy, share: 0}\n"                                              \
+    "  - {figure: psi, at_most: 0.01}\n"                                                                               \
+    "  - {figure: facets, at_most: 0.5, load_case: all}\n"                                                             \
+    "  - {figure: surface, at_most: 0.5, feed: fixed, load_case: all, share: 0.9}\n"                                   \
+    "  - {figure: mass, at_most: 1}\n"                                                                                 \
+    "  - {figure: pull, at_most: 200, load_case: all}\n"
+
+static const char *mixed_case(int samples)
+{
+    return file_with("c.yaml", formatted(BUILT_SCENE TOLERANCE MIXED, samples));
+}
+
+/* Copies the part of the output above the summary, which is the verdict. */
+static const char *verdict_of(const char *name)
+{
+    const char *end = strstr(said.out, "\npsi ");
+    ck_assert_msg(end && strncmp(said.out, "verdict: ", 9) == 0, "%s", said.out);
+    char *text = strndup(said.out, (size_t)(end - said.out));
+    const char *path = file_with(name, text);
+    free(text);
+    return path;
+}
+
+/* Failed and undecided rows stand first, then five that pass, by relative margin. */
+START_TEST(a_run_begins_with_its_verdict)
+{
+    const char *c = mixed_case(100), *path = temp("a.h5");
+    HIFDM(0, "run", c, "-o", path);
+    const char *run = verdict_of("run.txt");
+    OUT("verdict: fail; 7 of 9 requirements pass, 1 fails, 1 undecided\n  fail          psi       ");
+    OUT(" 39.27 mm  at most 10 mm ");
+    OUT(" margin -29.27 mm (-293 %)\n  undecided     tension, all load cases, 95 % of samples ");
+    OUT(" 0.1 to 500 N ");
+    OUT(" % of samples meet it (");
+    OUT("; worst: n4_0, cold\n");
+    OUT("worst: infinite in sample ");
+    OUT("                3 more rows: --verbose shows them\npsi ");
+    ck_assert_int_eq(count_of(said.out, "\n  pass   "), 5);
+    ck_assert_int_eq(count_of(said.out, "\n  -   "), 0);
+    ck_assert(strstr(said.out, "(+27") == NULL || strstr(said.out, "(+43") > strstr(said.out, "(+27"));
+    HIFDM(0, "show", path);
+    const char *show = verdict_of("show.txt");
+    HIFDM(0, "run", c, "-o", path);
+    ERR("is the finished result of this case");
+    EXPECT(run, show, verdict_of("again.txt"), "--", "a == b == c");
+    HIFDM(0, "show", path, "--verbose");
+    ck_assert_int_eq(count_of(said.out, "\n  pass   "), 7);
+    OUT("\n  -             loose_nodes, windy, samples ");
+    ck_assert_ptr_null(strstr(said.out, "--verbose shows them"));
+}
+END_TEST
+
+START_TEST(json_and_file_have_all_rows)
+{
+    const char *c = mixed_case(100), *path = temp("a.h5");
+    HIFDM(0, "run", c, "-o", path, "--json");
+    const char *run = out_as("run.json");
+    HIFDM(0, "show", path, "--json");
+    EXPECT(run, out_as("show.json"), path, "--", "a['requirements'] == b['requirements']", "a['verdict'] == 'fail'",
+           "[r['verdict'] for r in a['requirements']] == ['pass', 'undecided', 'pass', 'pass', 'none', 'fail', 'pass', "
+           "'pass', 'pass', 'pass']",
+           "[r['figure'] for r in a['requirements']] == texts(c['requirements/figure'])",
+           "all(r['margin'] == c['requirements/margin'][i] for i, r in enumerate(a['requirements']))",
+           "a['requirements'][1]['at_least'] == 0.1 and a['requirements'][1]['at_most'] == 500",
+           "[r['share'] for r in a['requirements']][:5] == [None, 0.95, 0.5, 0.5, 0]",
+           "a['requirements'][5]['error_bound'] < 1e-9 and a['requirements'][1]['error_bound'] is None",
+           "a['requirements'][5]['worst_sample'] == -1 and a['requirements'][1]['worst_sample'] >= 0",
+           "a['requirements'][4]['relative_margin'] is None and a['requirements'][4]['yield'] < 1",
+           "sorted(c['tolerance/load_case']) == ['cold', 'nominal', 'windy']",
+           "sorted(c['tolerance/load_case/windy']) == ['loose_nodes', 'surface_fixed', 'tension_max', 'tension_min']",
+           "sorted(c['tolerance/load_case/cold']) == ['slack_cables', 'surface_fixed', 'tension_max', 'tension_min']",
+           "(c['tolerance/load_case/nominal/tension_min'][:] == c['tolerance/sample/tension_min_N'][:]).all()",
+           "(c['tolerance/load_case/nominal/surface_fixed'][:] == c['tolerance/sample/half_path_rms_m'][:]).all()");
+}
+END_TEST
+
+/* A bound at the value itself: no numerical error and no number of samples decides it. */
+START_TEST(a_bound_at_the_value_is_undecided)
+{
+    const char *text = BUILT_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 200}\n" ROWS
+                                   "  - {figure: psi, at_most: %.17g}\n  - {figure: tension, at_least: %.17g, share: "
+                                   "0.75}\n",
+               *path = temp("a.h5");
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, 1.0, 1.0)), "-o", path, "--json");
+    double psi_m = number_after("\"figure\": \"psi\", \"set\": \"\", \"feed\": \"refocused\", \"load_case\": "
+                                "\"nominal\", \"at_least\": null, \"at_most\": 1, \"share\": null, \"unit\": \"m\", "
+                                "\"value\": "),
+           quantile_N = number_after("\"share\": 0.75, \"unit\": \"N\", \"value\": ");
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, psi_m, quantile_N)), "-o", path, "--restart", "--strict");
+    OUT("verdict: undecided; 0 of 2 requirements pass, 2 undecided\n");
+    OUT("; the value is certified to ");
+    OUT("; 75 % of samples meet it (");
+    OUT(" margin +0 N (+0 %)");
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, psi_m * (1 + 1e-9), quantile_N / 2)), "-o", path,
+          "--restart", "--strict");
+    OUT("verdict: pass; 2 of 2 requirements pass\n");
+    HIFDM(6, "run", file_with("c.yaml", formatted(text, psi_m * (1 - 1e-9), quantile_N)), "-o", path, "--restart",
+          "--strict");
+    OUT("verdict: fail; 0 of 2 requirements pass, 1 fails, 1 undecided\n");
+}
+END_TEST
+
+/* Exit status 6 for a row that fails, also if the result was finished before; the result file is complete. */
+START_TEST(strict_ends_with_its_own_status)
+{
+    const char *text = BUILT_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 50}\n" ROWS
+                                   "  - {figure: tension, at_least: 0.1, share: 0.5}\n"
+                                   "  - {figure: tension, at_most: 1, share: 0}\n  - {figure: psi, at_most: %s}\n",
+               *path = temp("a.h5"), *c = file_with("c.yaml", formatted(text, "1e-3"));
+    HIFDM(6, "run", c, "-o", path, "--strict", "--quiet");
+    ERR("error: the result fails 1 of 2 requirements");
+    EXPECT(path, "--", "a.attrs['finished']", "texts(a['requirements/verdict']) == ['pass', 'none', 'fail']");
+    HIFDM(6, "run", c, "-o", path, "--strict", "--quiet");
+    HIFDM(6, "tolerance", c, "-o", path, "--strict", "--quiet");
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet");
+    HIFDM(0, "show", path);
+    OUT("verdict: fail; ");
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, "1")), "-o", path, "--restart", "--strict", "--quiet");
+    HIFDM(0, "run", c, "-o", path, "--strict", "--quiet");
+    HIFDM(0, "run", file_with("d.yaml", BUILT_SCENE), "-o", temp("d.h5"), "--strict", "--quiet");
+}
+END_TEST
+
+/* Requirements add to a result and change nothing of it. */
+START_TEST(a_case_without_requirements_keeps_its_result)
+{
+    const char *plain = file_with("p.yaml", formatted(BUILT_SCENE TOLERANCE "surface: {}\n" LOADS, 80)),
+               *path = temp("p.h5"), *other = temp("c.h5");
+    HIFDM(0, "run", plain, "-o", path);
+    ck_assert_ptr_null(strstr(said.out, "verdict"));
+    ck_assert_int_eq(strncmp(said.out, "psi ", 4), 0);
+    HIFDM(0, "show", path, "--json");
+    ck_assert_ptr_null(strstr(said.out, "verdict"));
+    ck_assert_ptr_null(strstr(said.out, "requirements"));
+    HIFDM(0, "run", mixed_case(80), "-o", other, "--quiet");
+    EXPECT(path, other, "--", "'requirements' not in a and 'load_case' not in a['tolerance']", "'requirements' in b",
+           "all(a['tolerance/sample'][k][:].tobytes() == b['tolerance/sample'][k][:].tobytes() for k in "
+           "a['tolerance/sample'])",
+           "sorted(a['tolerance/sample']) == sorted(b['tolerance/sample'])",
+           "all(a['load_cases'][k]['position_m'][:].tobytes() == b['load_cases'][k]['position_m'][:].tobytes() for k in "
+           "['cold', 'windy'])");
+    HIFDM(0, "run",
+          file_with("n.yaml", formatted(BUILT_SCENE TOLERANCE LOADS ROWS "  - {figure: psi, at_most: 1}\n", 50)), "-o",
+          other, "--restart", "--quiet"); /* no row needs samples */
+    EXPECT(other, "--", "'load_case' not in a['tolerance']", "texts(a['requirements/verdict']) == ['pass']");
+}
+END_TEST
+
+/* A search changes the tensions that the laws demand: error bounds are those of the result. A search of a front has
+ * the form-finding's net as its result. */
+START_TEST(the_result_is_judged)
+{
+    const char *path = temp("a.h5"),
+               *text = BUILT_SCENE "optimize: {method: lm, variables: [{set: inner, vary: tension, bounds: [4, 40], "
+                                   "link: set}]%s}\n" ROWS "  - {figure: psi, at_most: 1}\n"
+                                   "  - {figure: tension, set: inner, at_most: 30}\n";
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, "")), "-o", path, "--quiet");
+    EXPECT(path, "--", "near(a['requirements/value'][0], a['refine'].attrs['psi_m'], 1e-14)",
+           "abs(a['requirements/value'][0] - a['form'].attrs['psi_m']) > 1e-6",
+           "a['requirements/value'][1] == a['refine/tension_N'][:][a['scene/cable/group'][:] == 0].max()",
+           "abs(a['requirements/value'][1] - 10) > 0.1", "a['requirements/error_bound'][1] < 1e-9");
+    HIFDM(0, "run",
+          file_with("c.yaml", formatted(text, ", front_points: 3, front: [{figure: psi}, {figure: ratio, set: inner}]")),
+          "-o", path, "--quiet", "--restart");
+    EXPECT(path, "--", "near(a['requirements/value'][0], a['form'].attrs['psi_m'], 1e-14)");
+}
+END_TEST
+
+/* A strut is no slack cable, and a set with a strut has no ratio. */
+START_TEST(struts_are_not_slack)
+{
+    file_with("n.csv", "id,x_m,y_m,z_m,role\na,-1,0,0,support\nb,1,0,0,support\nc,0,1,0,support\nm,0,0.2,0,inner\n");
+    file_with("e.csv", "id,i,j,group,law,value\np,a,m,inner,force_density,10\nq,b,m,inner,force_density,10\n"
+                       "r,c,m,inner,force_density,-3\n");
+    HIFDM(0, "run",
+          file_with("c.yaml", "scene: {import: {nodes: n.csv, cables: e.csv}}\nrequirements:\n"
+                              "  - {figure: slack_cables, at_most: 0}\n  - {figure: ratio, at_most: 1e3}\n"
+                              "  - {figure: tension, at_least: -5}\n"),
+          "-o", temp("a.h5"), "--json");
+    EXPECT(out_as("a.json"), "--", "[r['verdict'] for r in a['requirements']] == ['pass', 'fail', 'pass']",
+           "a['requirements'][1]['value'] is None", "a['requirements'][2]['worst_item'] == 'r'",
+           "a['form']['slack_cables'] == 0");
+}
+END_TEST
+
+/* A length or force a thousand times off its bound is probably in mm or kN. */
+START_TEST(a_bound_in_another_unit_is_doubted)
+{
+    const char *text = BUILT_SCENE ROWS "  - {figure: psi, at_most: %s}\n  - {figure: tension, at_most: %s}\n"
+                                        "  - {figure: slack_cables, at_most: 5}\n",
+               *path = temp("a.h5");
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, "45", "30")), "-o", path);
+    ERR("warning: requirements.0.at_most: the bound 45 m (45000 mm) and the value 0.0392743 m (39.2743 mm) differ by a "
+        "factor of 1.15e+03. Check the unit of the bound");
+    ck_assert_int_eq(count_of(said.err, "warning: "), 1);
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, "35", "0.02")), "-o", path, "--restart");
+    ERR("warning: requirements.1.at_most: the bound 0.02 N (20 mN) and the value 24.8329 N (24832.9 mN) differ by a");
+    ck_assert_int_eq(count_of(said.err, "warning: "), 1);
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, "35", "0.1")), "-o", path, "--restart");
+    ck_assert_str_eq(said.err, "");
+}
+END_TEST
+
+/* ---- load cases ---- */
+
+/* A net without a shape in a load case meets no row there, with and without a share. The other load cases have
+ * verdicts. */
+START_TEST(a_load_case_without_a_shape_fails_its_rows)
+{
+    const char *c = file_with(
+        "c.yaml", BUILT_SCENE "form: {method: fdm, max_iterations: 20}\nload_cases:\n"
+                              "  - {name: far, support_displacement_m: [0, 0, 0], force_N: [1e4, 1e4, 1e5]}\n"
+                              "  - {name: still, support_displacement_m: [0, 0, 0]}\n"
+                              "tolerance: {sigma_cut_m: 1e-5, samples: 50}\n" ROWS
+                              "  - {figure: psi, at_most: 1e6, load_case: far}\n"
+                              "  - {figure: psi, at_most: 1e6, load_case: all, share: 0.5}\n"
+                              "  - {figure: psi, at_most: 1, load_case: still}\n"
+                              "  - {figure: psi, at_most: 1, load_case: still, share: 0.5}\n");
+    HIFDM(6, "run", c, "-o", temp("a.h5"), "--strict");
+    ERR("no equilibrium was found in load case 'far': ");
+    OUT("verdict: fail; 2 of 4 requirements pass, 2 fail\n");
+    HIFDM(0, "show", temp("a.h5"), "--json");
+    EXPECT(out_as("a.json"), temp("a.h5"), "--",
+           "[r['verdict'] for r in a['requirements']] == ['fail', 'fail', 'pass', 'pass']",
+           "all(r['value'] is None and r['worst_load_case'] == 'far' for r in a['requirements'][:2])",
+           "a['requirements'][1]['yield'] == 0", "a['requirements'][3]['yield'] == 1",
+           "np.isnan(b['tolerance/load_case/far/psi'][:]).all()",
+           "np.isfinite(b['tolerance/load_case/still/psi'][:]).all()");
+}
+END_TEST
+
+/* ---- the same bits ---- */
+
+static const char *sampled_case(const char *sampling)
+{
+    return file_with("c.yaml", formatted(BUILT_SCENE LOADS
+                                         "tolerance: {sigma_cut_m: 1e-4, sigma_support_m: 2e-5, sigma_EA_ratio: 0.01, "
+                                         "samples: 600, sampling: %s}\n" ROWS
+                                         "  - {figure: tension, within: [0.1, 90], load_case: all, share: 0.9}\n"
+                                         "  - {figure: psi, at_most: 0.04, load_case: all, share: 0.5}\n"
+                                         "  - {figure: slack_cables, at_most: 0, share: 0}\n",
+                                         sampling));
+}
+
+static void demand_same(const char *path, const char *whole)
+{
+    EXPECT(path, whole, "--",
+           "all(a['tolerance/load_case'][s][k][:].tobytes() == b['tolerance/load_case'][s][k][:].tobytes() for s in "
+           "b['tolerance/load_case'] for k in b['tolerance/load_case'][s])",
+           "all(a['tolerance/sample'][k][:].tobytes() == b['tolerance/sample'][k][:].tobytes() for k in "
+           "b['tolerance/sample'])",
+           "all(a['requirements'][k][:].tobytes() == b['requirements'][k][:].tobytes() for k in b['requirements'])",
+           "sorted(a['tolerance/load_case']) == ['cold', 'nominal', 'windy']",
+           "len(a['tolerance/load_case/cold/psi']) == 600", "(a['tolerance/sample/n_slack'][:] > 0).any()");
+}
+
+/* By one thread, by three, and by three tasks of which one never ran. */
+START_TEST(threads_and_tasks_change_nothing)
+{
+    const char *c = sampled_case(_i ? "sobol" : "random"), *whole = temp("a.h5"), *path = temp("b.h5");
+    HIFDM(0, "tolerance", c, "-o", whole, "--threads", "1", "--quiet");
+    HIFDM(0, "run", c, "-o", path, "--threads", "3", "--quiet");
+    demand_same(path, whole);
+    path = temp("c.h5");
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "0", "--tasks", "3", "--quiet");
+    HIFDM(0, "tolerance", c, "-o", path, "--task", "2", "--tasks", "3", "--quiet", "--strict");
+    ck_assert(!is_there(path));
+    HIFDM(0, "tolerance", c, "-o", path, "--tasks", "3", "--quiet");
+    demand_same(path, whole);
+    SHELL(0, "test \"$(ls \"$1\"*)\" = \"$1\"", path); /* no journals are left */
+}
+END_TEST
+
+/* Killed after a few changes in its folder, and resumed: the same bits. */
+START_TEST(killed_runs_resume)
+{
+    const char *c = sampled_case("random"), *whole = temp("a.h5"), *folder = temp("folder");
+    HIFDM(0, "tolerance", c, "-o", whole, "--quiet");
+    ck_assert_int_eq(mkdir(folder, 0777), 0);
+    const char *path = keep(formatted("%s/b.h5", folder));
+    const char *const argv[] = {hifdm_program(), "tolerance", c, "-o", path, "--quiet", "--threads", "1", NULL};
+    for (int kills = 0; kills < 3; kills++) {
+        session s = start_session(folder, false, argv);
+        for (int k = 0; k < 4 + 3 * kills && wait_for_change(&s) >= 0 && !s.has_ended;)
+            k = s.n_change;
+        end_by(&s, SIGKILL);
+    }
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet");
+    demand_same(path, whole);
+    SHELL(0, "test \"$(ls \"$1\")\" = b.h5", folder);
+}
+END_TEST
+
+/* Samples of other requirements have other figures. */
+START_TEST(samples_of_other_requirements_are_not_used)
+{
+    const char *text = BUILT_SCENE "tolerance: {sigma_cut_m: 1e-4, samples: 300}\n" ROWS "  - {figure: %s}\n",
+               *path = temp("a.h5");
+    HIFDM(0, "tolerance", file_with("c.yaml", formatted(text, "psi, at_most: 1, share: 0.5")), "-o", path, "--task",
+          "0", "--tasks", "2", "--quiet");
+    HIFDM(5, "tolerance", file_with("c.yaml", formatted(text, "pull, at_most: 50, share: 0.5")), "-o", path, "--tasks",
+          "2", "--quiet");
+    ERR("has samples of another case");
+    HIFDM(0, "tolerance", temp("c.yaml"), "-o", path, "--tasks", "2", "--quiet", "--restart");
+    EXPECT(path, "--", "list(a['tolerance/load_case/nominal']) == ['pull']");
+}
+END_TEST
+
+/* A study runs cases with requirements, too. */
+START_TEST(points_of_a_study_have_verdicts)
+{
+    mixed_case(80);
+    const char *study = file_with("s.yaml", "base: c.yaml\nsweep:\n  form.pretension_N: [10, 20]\n"),
+               *folder = temp("s.d"), *merged = temp("m.h5"), *alone = temp("a.h5");
+    HIFDM(0, "sweep", study, "--dir", folder, "--quiet");
+    HIFDM(0, "merge", study, "--dir", folder, "-o", merged);
+    HIFDM(0, "run", temp("c.yaml"), "-o", alone, "--quiet", "--set", "form.pretension_N=20");
+    EXPECT(alone, merged, "--", "b['points/tolerance/psi_95_m'][1] == a['tolerance'].attrs['psi_95_m']");
+}
+END_TEST
+
+Suite *suite_cli_requirements(void)
+{
+    Suite *suite = suite_create("cli/requirements");
+    TCase *tests = tcase_create("requirements");
+    suite_add_tcase(suite, tests);
+    tcase_add_test(tests, faults_are_named);
+    tcase_add_test(tests, rows_that_differ_are_accepted);
+    tcase_add_test(tests, a_run_begins_with_its_verdict);
+    tcase_add_test(tests, json_and_file_have_all_rows);
+    tcase_add_test(tests, a_bound_at_the_value_is_undecided);
+    tcase_add_test(tests, strict_ends_with_its_own_status);
+    tcase_add_test(tests, a_case_without_requirements_keeps_its_result);
+    tcase_add_test(tests, the_result_is_judged);
+    tcase_add_test(tests, struts_are_not_slack);
+    tcase_add_test(tests, a_bound_in_another_unit_is_doubted);
+    tcase_add_test(tests, a_load_case_without_a_shape_fails_its_rows);
+    tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
+    tcase_add_test(tests, killed_runs_resume);
+    tcase_add_test(tests, samples_of_other_requirements_are_not_used);
+    tcase_add_test(tests, points_of_a_study_have_verdicts);
+    return suite;
+}
