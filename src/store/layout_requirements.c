@@ -49,6 +49,26 @@ static int index_of(const char *word, int n, const char *const *words)
     return k < n ? k : -1;
 }
 
+/* Sets the bytes behind the end of a text to zero, because other programs read them. A text that replaced a longer one
+ * leaves some of it. */
+static void clear_rest(char *text, size_t size)
+{
+    size_t length = strnlen(text, size);
+    memset(text + length, 0, size - length);
+}
+
+static void put_verdict(const hf_requirement_verdict *v, judged *row)
+{
+    row->of = *v;
+    strncpy(row->figure, hf_required_figure_word[v->row.figure], WORD_SIZE - 1);
+    strncpy(row->feed, hf_focus_word[v->row.feed], WORD_SIZE - 1);
+    strncpy(row->verdict, hf_verdict_word[v->verdict], WORD_SIZE - 1);
+    clear_rest(row->of.row.set, sizeof row->of.row.set);
+    clear_rest(row->of.row.load_case, sizeof row->of.row.load_case);
+    clear_rest(row->of.worst_load_case, sizeof row->of.worst_load_case);
+    clear_rest(row->of.worst_item, sizeof row->of.worst_item);
+}
+
 static void get_verdicts(hf_hdf5 *io, const judged *rows, hf_summary *s)
 {
     for (int i = 0; i < s->n_requirement && io->status == HF_OK; i++) {
@@ -72,13 +92,8 @@ void hf_layout_pass_requirements(hf_hdf5 *io, bool writes, hf_summary *s)
     static judged rows[HF_REQUIREMENT_ROWS_MAX]; /* the lock of the store is held */
     if (writes ? s->n_requirement == 0 : !hf_hdf5_has(io, io->file, GROUP "/verdict")) return;
     memset(rows, 0, sizeof rows);
-    for (int i = 0; writes && i < s->n_requirement; i++) {
-        const hf_requirement_verdict *v = &s->requirement[i];
-        rows[i].of = *v;
-        strncpy(rows[i].figure, hf_required_figure_word[v->row.figure], WORD_SIZE - 1);
-        strncpy(rows[i].feed, hf_focus_word[v->row.feed], WORD_SIZE - 1);
-        strncpy(rows[i].verdict, hf_verdict_word[v->verdict], WORD_SIZE - 1);
-    }
+    for (int i = 0; writes && i < s->n_requirement; i++)
+        put_verdict(&s->requirement[i], &rows[i]);
     hid_t group = writes ? hf_hdf5_make_group(io, GROUP) : hf_hdf5_open_group(io, GROUP);
     if (!writes) s->n_requirement = hf_hdf5_length(io, group, "verdict", HF_REQUIREMENT_ROWS_MAX);
     if (!writes) s->requirement = hf_hdf5_take(io, HF_REQUIREMENT_ROWS_MAX, sizeof *s->requirement);
