@@ -195,13 +195,17 @@ def sha256(content):
     return hashlib.sha256(content).hexdigest()
 
 
+OF_SURFACE = ("surface", "facet", "fit_", "half_path", "gain_loss")  # columns of samples
+
+
 def bits(file, case):
     """Returns one line per group of numbers: case, group, and a checksum of names, types, shapes and bytes. In a merged
     study the result files of the points are one group, "runs"."""
     groups = {}
     for name, (kind, shape, data) in sorted(contents(file).items()):
         parts = name.split("/")
-        left_out = {"case", "surface"} & set(parts[:-1]) or parts[-1].endswith("condition")
+        left_out = {"case", "surface", "requirements"} & set(parts[:-1]) or parts[-1].endswith("condition")
+        left_out = left_out or parts[0] == "tolerance" and parts[-1].startswith(OF_SURFACE)
         if isinstance(data, bytes) and not left_out:
             group = groups.setdefault(parts[0], hashlib.sha256())
             group.update(f"{name} {kind} {shape} ".encode() + data)

@@ -22,13 +22,13 @@ START_TEST(faults_are_named)
         {"  - {figure: tensoin, at_least: 1}\n", "6:14: requirements.0.figure: must be one of psi surface facets "},
         {"  - {figure: tension, at_leat: 1}\n", "6:23: at_leat: unknown key; did you mean 'at_least'?"},
         {"  - {figure: tension, at_least: .nan}\n", "6:33: requirements.0.at_least: must be a finite number"},
-        {"  - {figure: tension, at_least: 5, at_most: 2}\n", "6:33: requirements.0.at_least: must not be above at_most"},
+        {"  - {figure: tension, at_least: 5, at_most: 2}\n",
+         "6:33: requirements.0.at_least: must not be above at_most"},
         {"  - {figure: tension, within: [5, 2]}\n",
          "6:31: requirements.0.within: the lower bound must be below the upper one"},
         {"  - {figure: tension, within: [1, 2], at_most: 3}\n",
          "6:31: requirements.0.within: replaces at_least and at_most; keep one of them"},
-        {"  - {figure: psi, at_most: -1e-3}\n",
-         "6:28: requirements.0.at_most: is below 0, which no net can reach"},
+        {"  - {figure: psi, at_most: -1e-3}\n", "6:28: requirements.0.at_most: is below 0, which no net can reach"},
         {"  - {figure: ratio, at_most: 0.5}\n",
          "6:30: requirements.0.at_most: is below 1, the ratio of equal tensions"},
         {"  - {figure: psi, at_most: 1, set: inner}\n",
@@ -51,7 +51,8 @@ START_TEST(faults_are_named)
         {"  - {figure: surface, at_most: 1}\n", "6:14: requirements.0.figure: is not measured; add a section surface"},
         {"  - {figure: facets, at_most: 1}\n", "6:14: requirements.0.figure: is not measured; add a section surface"},
         {"  - {figure: deflection, at_most: 1}\n", "6:14: requirements.0.figure: needs a section truss"},
-        {"  - {figure: mass, at_most: 1}\n", "6:14: requirements.0.figure: 58 cables have no mass per length, such as '"},
+        {"  - {figure: mass, at_most: 1}\n",
+         "6:14: requirements.0.figure: 58 cables have no mass per length, such as '"},
         {"  - {figure: mass, at_most: 1, share: 0.5}\n" SAMPLES,
          "6:39: requirements.0.share: has no meaning for mass, which neither loads nor errors change"},
         {"  - {figure: mass, at_most: 1, load_case: cold}\n" LOADED,
@@ -97,16 +98,16 @@ END_TEST
 START_TEST(rows_that_differ_are_accepted)
 {
     HIFDM(0, "check",
-          file_with("c.yaml", formatted(BUILT_SCENE TOLERANCE LOADS ROWS
-                                        "  - {figure: tension, at_least: 1}\n"
-                                        "  - {figure: tension, at_most: 90}\n"
-                                        "  - {figure: tension, at_least: 1, set: inner}\n"
-                                        "  - {figure: tension, at_least: 2, share: 0.9}\n"
-                                        "  - {figure: tension, at_least: 3, share: 0.5}\n"
-                                        "  - {figure: tension, at_most: 0.5, share: 0}\n"
-                                        "  - {figure: tension, at_least: 2, load_case: all}\n"
-                                        "  - {figure: tension, at_least: 2, load_case: cold}\n",
-                                        100)));
+          file_with("c.yaml",
+                    formatted(BUILT_SCENE TOLERANCE LOADS ROWS "  - {figure: tension, at_least: 1}\n"
+                                                               "  - {figure: tension, at_most: 90}\n"
+                                                               "  - {figure: tension, at_least: 1, set: inner}\n"
+                                                               "  - {figure: tension, at_least: 2, share: 0.9}\n"
+                                                               "  - {figure: tension, at_least: 3, share: 0.5}\n"
+                                                               "  - {figure: tension, at_most: 0.5, share: 0}\n"
+                                                               "  - {figure: tension, at_least: 2, load_case: all}\n"
+                                                               "  - {figure: tension, at_least: 2, load_case: cold}\n",
+                              100)));
     OUT("valid");
 }
 END_TEST
@@ -115,7 +116,7 @@ END_TEST
 
 #define MIXED                                                                                                          \
     "surface: {}\n" LOADS ROWS "  - {figure: tension, set: boundary, at_least: 1, load_case: all}\n"                   \
-    "  - {figure: tension, within: [0.1, 500], load_case: all, share: 0.95}\n"                                          \
+    "  - {figure: tension, within: [0.1, 500], load_case: all, share: 0.95}\n"                                         \
     "  - {figure: ratio, set: inner, at_most: 30, share: 0.5}\n"                                                       \
     "  - {figure: slack_cables, at_most: 3, load_case: cold, share: 0.5}\n"                                            \
     "  - {figure: loose_nodes, at_most: 0, load_case: windy, share: 0}\n"                                              \
@@ -186,6 +187,8 @@ START_TEST(json_and_file_have_all_rows)
            "a['requirements'][5]['error_bound'] < 1e-9 and a['requirements'][1]['error_bound'] is None",
            "a['requirements'][5]['worst_sample'] == -1 and a['requirements'][1]['worst_sample'] >= 0",
            "a['requirements'][4]['relative_margin'] is None and a['requirements'][4]['yield'] < 1",
+           "all([r[k] for r in a['requirements']] == texts(c['requirements'][k]) for k in ['set', 'load_case', 'feed', "
+           "'verdict', 'worst_load_case', 'worst_item'])", /* with no byte behind the end of a text */
            "sorted(c['tolerance/load_case']) == ['cold', 'nominal', 'windy']",
            "sorted(c['tolerance/load_case/windy']) == ['loose_nodes', 'surface_fixed', 'tension_max', 'tension_min']",
            "sorted(c['tolerance/load_case/cold']) == ['slack_cables', 'surface_fixed', 'tension_max', 'tension_min']",
@@ -211,8 +214,8 @@ START_TEST(a_bound_at_the_value_is_undecided)
     OUT("; the value is certified to ");
     OUT("; 75 % of samples meet it (");
     OUT(" margin +0 N (+0 %)");
-    HIFDM(0, "run", file_with("c.yaml", formatted(text, psi_m * (1 + 1e-9), quantile_N / 2)), "-o", path,
-          "--restart", "--strict");
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, psi_m * (1 + 1e-9), quantile_N / 2)), "-o", path, "--restart",
+          "--strict");
     OUT("verdict: pass; 2 of 2 requirements pass\n");
     HIFDM(6, "run", file_with("c.yaml", formatted(text, psi_m * (1 - 1e-9), quantile_N)), "-o", path, "--restart",
           "--strict");
@@ -253,12 +256,13 @@ START_TEST(a_case_without_requirements_keeps_its_result)
     ck_assert_ptr_null(strstr(said.out, "verdict"));
     ck_assert_ptr_null(strstr(said.out, "requirements"));
     HIFDM(0, "run", mixed_case(80), "-o", other, "--quiet");
-    EXPECT(path, other, "--", "'requirements' not in a and 'load_case' not in a['tolerance']", "'requirements' in b",
-           "all(a['tolerance/sample'][k][:].tobytes() == b['tolerance/sample'][k][:].tobytes() for k in "
-           "a['tolerance/sample'])",
-           "sorted(a['tolerance/sample']) == sorted(b['tolerance/sample'])",
-           "all(a['load_cases'][k]['position_m'][:].tobytes() == b['load_cases'][k]['position_m'][:].tobytes() for k in "
-           "['cold', 'windy'])");
+    EXPECT(
+        path, other, "--", "'requirements' not in a and 'load_case' not in a['tolerance']", "'requirements' in b",
+        "all(a['tolerance/sample'][k][:].tobytes() == b['tolerance/sample'][k][:].tobytes() for k in "
+        "a['tolerance/sample'])",
+        "sorted(a['tolerance/sample']) == sorted(b['tolerance/sample'])",
+        "all(a['load_cases'][k]['position_m'][:].tobytes() == b['load_cases'][k]['position_m'][:].tobytes() for k in "
+        "['cold', 'windy'])");
     HIFDM(0, "run",
           file_with("n.yaml", formatted(BUILT_SCENE TOLERANCE LOADS ROWS "  - {figure: psi, at_most: 1}\n", 50)), "-o",
           other, "--restart", "--quiet"); /* no row needs samples */
@@ -270,18 +274,19 @@ END_TEST
  * the form-finding's net as its result. */
 START_TEST(the_result_is_judged)
 {
-    const char *path = temp("a.h5"),
-               *text = BUILT_SCENE "optimize: {method: lm, variables: [{set: inner, vary: tension, bounds: [4, 40], "
-                                   "link: set}]%s}\n" ROWS "  - {figure: psi, at_most: 1}\n"
-                                   "  - {figure: tension, set: inner, at_most: 30}\n";
+    const char *path = temp("a.h5"), *text = BUILT_SCENE
+                                     "optimize: {method: lm, variables: [{set: inner, vary: tension, bounds: [4, 40], "
+                                     "link: set}]%s}\n" ROWS "  - {figure: psi, at_most: 1}\n"
+                                     "  - {figure: tension, set: inner, at_most: 30}\n";
     HIFDM(0, "run", file_with("c.yaml", formatted(text, "")), "-o", path, "--quiet");
     EXPECT(path, "--", "near(a['requirements/value'][0], a['refine'].attrs['psi_m'], 1e-14)",
            "abs(a['requirements/value'][0] - a['form'].attrs['psi_m']) > 1e-6",
            "a['requirements/value'][1] == a['refine/tension_N'][:][a['scene/cable/group'][:] == 0].max()",
            "abs(a['requirements/value'][1] - 10) > 0.1", "a['requirements/error_bound'][1] < 1e-9");
-    HIFDM(0, "run",
-          file_with("c.yaml", formatted(text, ", front_points: 3, front: [{figure: psi}, {figure: ratio, set: inner}]")),
-          "-o", path, "--quiet", "--restart");
+    HIFDM(
+        0, "run",
+        file_with("c.yaml", formatted(text, ", front_points: 3, front: [{figure: psi}, {figure: ratio, set: inner}]")),
+        "-o", path, "--quiet", "--restart");
     EXPECT(path, "--", "near(a['requirements/value'][0], a['form'].attrs['psi_m'], 1e-14)");
 }
 END_TEST
@@ -327,15 +332,15 @@ END_TEST
  * verdicts. */
 START_TEST(a_load_case_without_a_shape_fails_its_rows)
 {
-    const char *c = file_with(
-        "c.yaml", BUILT_SCENE "form: {method: fdm, max_iterations: 20}\nload_cases:\n"
-                              "  - {name: far, support_displacement_m: [0, 0, 0], force_N: [1e4, 1e4, 1e5]}\n"
-                              "  - {name: still, support_displacement_m: [0, 0, 0]}\n"
-                              "tolerance: {sigma_cut_m: 1e-5, samples: 50}\n" ROWS
-                              "  - {figure: psi, at_most: 1e6, load_case: far}\n"
-                              "  - {figure: psi, at_most: 1e6, load_case: all, share: 0.5}\n"
-                              "  - {figure: psi, at_most: 1, load_case: still}\n"
-                              "  - {figure: psi, at_most: 1, load_case: still, share: 0.5}\n");
+    const char *c =
+        file_with("c.yaml", BUILT_SCENE "form: {method: fdm, max_iterations: 20}\nload_cases:\n"
+                                        "  - {name: far, support_displacement_m: [0, 0, 0], force_N: [1e4, 1e4, 1e5]}\n"
+                                        "  - {name: still, support_displacement_m: [0, 0, 0]}\n"
+                                        "tolerance: {sigma_cut_m: 1e-5, samples: 50}\n" ROWS
+                                        "  - {figure: psi, at_most: 1e6, load_case: far}\n"
+                                        "  - {figure: psi, at_most: 1e6, load_case: all, share: 0.5}\n"
+                                        "  - {figure: psi, at_most: 1, load_case: still}\n"
+                                        "  - {figure: psi, at_most: 1, load_case: still, share: 0.5}\n");
     HIFDM(6, "run", c, "-o", temp("a.h5"), "--strict");
     ERR("no equilibrium was found in load case 'far': ");
     OUT("verdict: fail; 2 of 4 requirements pass, 2 fail\n");

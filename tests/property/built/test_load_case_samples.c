@@ -10,11 +10,13 @@ static const char *const name[N_LOAD_CASE] = {"hot", "pushed"};
 
 #define ROW(kind, low, high)                                                                                           \
     {                                                                                                                  \
-        .figure = HF_REQUIRED_##kind, .load_case = "all", .at_least = low, .at_most = high, .share = 0.5,              \
-        .within = {-INFINITY, INFINITY}                                                                                \
+        .figure = HF_REQUIRED_##kind, .load_case = "all", .at_least = low, .at_most = high, .share = 0.5, .within = {  \
+            -INFINITY,                                                                                                 \
+            INFINITY                                                                                                   \
+        }                                                                                                              \
     }
-static const hf_requirement_settings row_table[] = {ROW(PSI, NAN, 1),  ROW(TENSION, 1, 100), ROW(RATIO, NAN, 9),
-                                                    ROW(SLACK, NAN, 0), ROW(LOOSE, NAN, 0),   ROW(PULL, NAN, 50),
+static const hf_requirement_settings row_table[] = {ROW(PSI, NAN, 1),          ROW(TENSION, 1, 100), ROW(RATIO, NAN, 9),
+                                                    ROW(SLACK, NAN, 0),        ROW(LOOSE, NAN, 0),   ROW(PULL, NAN, 50),
                                                     ROW(DEFLECTION, NAN, 1e-3)};
 enum { N_ROW = sizeof row_table / sizeof *row_table };
 
@@ -78,9 +80,9 @@ static void open_study(study *s, int trial)
     open_design(&s->net, trial, s->EA, on_truss);
     make_built(&s->net, &s->built, &s->work);
     make_load_cases(s, &rng, trial % 5 == 2 ? 10 : 1);
-    ck_assert_int_eq(hf_required_create(on_truss ? N_ROW : N_ROW - 1, row_table, &s->net.scene, &s->cases, NULL,
-                                        &s->required),
-                     HF_OK);
+    ck_assert_int_eq(
+        hf_required_create(on_truss ? N_ROW : N_ROW - 1, row_table, &s->net.scene, &s->cases, NULL, &s->required),
+        HF_OK);
     ck_assert_int_eq(hf_montecarlo_create(&s->settings, &s->built, NULL, NULL, NULL, 1, &s->m), HF_OK);
     ck_assert_msg(hf_montecarlo_require(&s->m, &s->required, on_truss ? s->attachment_move_m : NULL, &messages) ==
                       HF_OK,
@@ -164,8 +166,8 @@ static void demand_shape(const study *s, const char *what, long i, const double 
     const hf_model *m = &s->built.model;
     for (int k = 0; k < 3 * m->n_node; k++)
         ck_assert_msg(fabs(position_m[k] - s->work.position_m[k]) < near_m(r),
-                      "%s, %s %ld: row %d is %g m away; %d slack cables, %d loose nodes", s->now->load_case->name,
-                      what, i, k % m->n_node, position_m[k] - s->work.position_m[k], r->n_slack, r->n_loose);
+                      "%s, %s %ld: row %d is %g m away; %d slack cables, %d loose nodes", s->now->load_case->name, what,
+                      i, k % m->n_node, position_m[k] - s->work.position_m[k], r->n_slack, r->n_loose);
     for (int e = 0; e < m->n_cable; e++)
         ck_assert_double_eq_tol(tension_N[e], s->work.tension_N[e], 1e-6 * m->reference_N);
 }
@@ -179,6 +181,25 @@ static double value_of(const study *s, long i, hf_required_figure figure, bool i
             return row[hf_montecarlo_value_at(&s->required, s->now->state, false) + (size_t)k];
     ck_abort_msg("no such column");
     return 0;
+}
+
+/* Demands that the displacements by the truss lead from the resting positions, which move_m changes, to the shape.
+ * Returns the maximum. */
+static double demand_displacements(const hf_model *m, const double *position_m, const double *displacement_m,
+                                   const double *move_m)
+{
+    double most_m = 0;
+    for (int k = 0; k < m->n_attachment; k++) {
+        double square = 0;
+        for (int c = 0; c < 3; c++) {
+            int at = c * m->n_node + m->attachment_row[k];
+            double rest_m = m->position_m[at] + move_m[at];
+            ck_assert_double_eq_tol(displacement_m[3 * k + c], position_m[at] - rest_m, 1e-9);
+            square += pow(position_m[at] - rest_m, 2);
+        }
+        most_m = fmax(most_m, sqrt(square));
+    }
+    return most_m;
 }
 
 /* Demands that the row of sample i has the figures of its shape. */
@@ -220,6 +241,12 @@ static void hold_against(void *context, long i, const hf_built_shape *shape, con
     s->n_loose += r->n_loose;
     demand_shape(s, "sample", i, shape->position_m, shape->tension_N, r);
     demand_row(s, i, shape, r);
+    if (!s->built.model.n_attachment) return;
+    double deflection_m = demand_displacements(&s->built.model, s->work.position_m, s->work.displacement_m, s->move_m);
+    for (int k = 0; k < 3 * s->built.model.n_node; k++)
+        s->move_m[k] -= s->load_move_m[k]; /* the net in the load case has these already */
+    demand_displacements(&s->now->built.model, shape->position_m, shape->displacement_m, s->move_m);
+    ck_assert_double_eq_tol(value_of(s, i, HF_REQUIRED_DEFLECTION, false), deflection_m, 1e-9);
 }
 
 START_TEST(samples_in_load_cases_are_those_of_the_reference)

@@ -61,7 +61,7 @@ START_TEST(columns_are_measured_once)
     static const struct {
         const char *name;
         unsigned nominal, many;
-    } wanted[] = {{"tension_min", 1, 4},  {"tension_max", 1, 0},       {"tension_max_inner", 0, 7},
+    } wanted[] = {{"tension_min", 1, 4},  {"tension_max", 1, 0},      {"tension_max_inner", 0, 7},
                   {"slack_cables", 2, 0}, {"facets_refocused", 7, 0}, {"facets_fixed", 0, 2}};
     ck_assert_int_eq(q.n_column, 6);
     for (int k = 0; k < q.n_column; k++) {
@@ -203,9 +203,8 @@ static void apply_laws(const hf_model *m, const hf_workspace *w, const double *p
     for (int e = 0; e < m->n_cable; e++) {
         double square = 0;
         for (int c = 0; c < 3; c++)
-            square += pow(position_m[c * m->n_node + m->end_row[2 * e]] -
-                              position_m[c * m->n_node + m->end_row[2 * e + 1]],
-                          2);
+            square += pow(
+                position_m[c * m->n_node + m->end_row[2 * e]] - position_m[c * m->n_node + m->end_row[2 * e + 1]], 2);
         tension_N[e] = hf_law_tension_N(hf_workspace_cable(m, w, e), sqrt(square));
     }
 }
@@ -305,8 +304,8 @@ START_TEST(error_bounds_hold_for_surfaces)
             hf_surface_measures is;
             if (k) displace(&rng, &p.model, bound_m, p.workspace.position_m, moved_m);
             const double *position_m = k ? moved_m : p.workspace.position_m;
-            ck_assert_int_eq(hf_surface_measure(&p.surface, &p.facets, &p.model, position_m, p.workspace.tension_N, &is),
-                             HF_OK);
+            ck_assert_int_eq(
+                hf_surface_measure(&p.surface, &p.facets, &p.model, position_m, p.workspace.tension_N, &is), HF_OK);
             hf_required_shape s = {.model = &p.model,
                                    .position_m = position_m,
                                    .tension_N = p.workspace.tension_N,
@@ -393,13 +392,11 @@ START_TEST(a_margin_is_judged_by_its_error)
     static const struct {
         double margin, error;
         hf_verdict wanted;
-    } table[] = {{2, 1, HF_VERDICT_PASS},           {1, 1, HF_VERDICT_PASS},
-                 {0.999, 1, HF_VERDICT_UNDECIDED},  {0, 1, HF_VERDICT_UNDECIDED},
-                 {-0.999, 1, HF_VERDICT_UNDECIDED}, {-1, 1, HF_VERDICT_UNDECIDED},
-                 {-1.001, 1, HF_VERDICT_FAIL},      {0, 0, HF_VERDICT_PASS},
-                 {-1e-300, 0, HF_VERDICT_FAIL},     {0, NAN, HF_VERDICT_PASS},
-                 {1e-9, NAN, HF_VERDICT_PASS},      {-1e-9, NAN, HF_VERDICT_FAIL},
-                 {NAN, 1, HF_VERDICT_FAIL},         {NAN, NAN, HF_VERDICT_FAIL}};
+    } table[] = {{2, 1, HF_VERDICT_PASS},      {1, 1, HF_VERDICT_PASS},           {0.999, 1, HF_VERDICT_UNDECIDED},
+                 {0, 1, HF_VERDICT_UNDECIDED}, {-0.999, 1, HF_VERDICT_UNDECIDED}, {-1, 1, HF_VERDICT_UNDECIDED},
+                 {-1.001, 1, HF_VERDICT_FAIL}, {0, 0, HF_VERDICT_PASS},           {-1e-300, 0, HF_VERDICT_FAIL},
+                 {0, NAN, HF_VERDICT_PASS},    {1e-9, NAN, HF_VERDICT_PASS},      {-1e-9, NAN, HF_VERDICT_FAIL},
+                 {NAN, 1, HF_VERDICT_FAIL},    {NAN, NAN, HF_VERDICT_FAIL}};
     row_list l = {0};
     struct net net;
     hf_required q;
@@ -465,7 +462,8 @@ END_TEST
 
 START_TEST(the_verdict_on_all_rows)
 {
-    hf_requirement_verdict v[3] = {{.verdict = HF_VERDICT_NONE}, {.verdict = HF_VERDICT_NONE}, {.verdict = HF_VERDICT_NONE}};
+    hf_requirement_verdict v[3] = {
+        {.verdict = HF_VERDICT_NONE}, {.verdict = HF_VERDICT_NONE}, {.verdict = HF_VERDICT_NONE}};
     ck_assert_int_eq(hf_requirements_verdict(0, v), HF_VERDICT_NONE);
     ck_assert_int_eq(hf_requirements_verdict(2, v), HF_VERDICT_NONE);
     v[2].verdict = HF_VERDICT_PASS;
@@ -502,7 +500,8 @@ START_TEST(quantile_and_yield_agree)
     struct net net;
     hf_required q;
     int n = rng_int(&rng, 10, 3000), part = rng_int(&rng, 0, 99);
-    double share = _i % 3 ? share_table[rng_int(&rng, 0, 5)] : (double)rng_int(&rng, 1, n - 1) / n, by = _i % 2 ? 1 : 10;
+    double share = _i % 3 ? share_table[rng_int(&rng, 0, 5)] : (double)rng_int(&rng, 1, n - 1) / n,
+           by = _i % 2 ? 1 : 10;
     OPEN_HAND(&net, star_node, star_cable, HF_METHOD_NEWTON);
     add(&l, HF_REQUIRED_TENSION, "", "all", 5, 60, share);
     add(&l, HF_REQUIRED_PSI, "", "hot", NAN, 1, NAN); /* of the nominal net */
@@ -543,8 +542,8 @@ START_TEST(quantile_and_yield_agree)
     const hf_statistics_rows of = {n, read_rows, &rows, m.n_value};
     ck_assert_int_eq(hf_statistics_judge(&m, &of, v), HF_OK);
     ck_assert_double_eq(v[0].yield, (double)met / n);
-    ck_assert_msg((v[0].margin >= 0) == ((double)met >= share * n * (1 - 1e-12)),
-                  "quantile %g, %ld of %d, share %.17g", v[0].margin, met, n, share);
+    ck_assert_msg((v[0].margin >= 0) == ((double)met >= share * n * (1 - 1e-12)), "quantile %g, %ld of %d, share %.17g",
+                  v[0].margin, met, n, share);
     ck_assert_int_eq(v[0].worst_sample, at_worst);
     ck_assert_double_eq(v[0].worst_margin, worst);
     long below = 0, equal = 0, rank = 1 + (long)floor((1 - share) * n + 1e-9);
@@ -553,8 +552,7 @@ START_TEST(quantile_and_yield_agree)
         equal += margin[i] == v[0].margin;
     }
     ck_assert_msg(below < rank && below + equal >= rank, "%ld below, %ld equal, rank %ld", below, equal, rank);
-    if (!isinf(v[0].margin))
-        ck_assert_double_eq(v[0].margin, fmin(v[0].value - 5, 60 - v[0].value));
+    if (!isinf(v[0].margin)) ck_assert_double_eq(v[0].margin, fmin(v[0].value - 5, 60 - v[0].value));
     hf_verdict wanted = v[0].yield_low >= share   ? HF_VERDICT_PASS
                         : v[0].yield_high < share ? HF_VERDICT_FAIL
                                                   : HF_VERDICT_UNDECIDED;

@@ -1,0 +1,244 @@
+"""Recomputes the verdict on every row of `requirements` of a result by numpy and scipy alone, from the samples and the
+shapes in its file. Usage: requirements_oracle.py RESULT.h5
+
+METHOD section 14 has the equations. Rows with a share come from /tolerance/load_case: margin, yield with the interval
+of Clopper and Pearson, quantile, worst sample. Other rows come from the shapes and tensions of the result and of its
+load cases. The best fit, the facets (triangles of the front cables) and their converged quadrature are the oracle's
+own."""
+import sys
+
+import figures
+import h5py
+import numpy as np
+import yaml
+from scipy.optimize import least_squares
+from scipy.stats import beta
+
+SLACK = 1e-3  # of the maximum tension of the design, HF_SLACK_RATIO
+TOLERANCE = 1e-9  # relative, of values
+QUADRATURE = 5e-4  # of facets: the program has 3 x 3 points (METHOD section 9), which are 2.1e-4 off for the 6 m net
+COUNT = ("slack_cables", "loose_nodes")
+
+
+def words(data_set):
+    return [w.decode() if isinstance(w, bytes) else w for w in data_set[:]]
+
+
+class Result:
+    def __init__(self, file):
+        self.file = file
+        scene = file["scene"]
+        self.end, self.group = scene["cable/end"][:], scene["cable/group"][:]
+        self.EA = scene["cable/EA_N"][:]
+        self.target, self.role = scene["node/position_m"][:], scene["node/role"][:]
+        start, member = scene["set/start"][:], scene["set/cable"][:]
+        self.set = {name: member[start[k]:start[k + 1]] for k, name in enumerate(words(scene["set/name"]))}
+        self.set |= {"": np.arange(len(self.end)), "inner": np.flatnonzero(self.group == 0),
+                     "boundary": np.flatnonzero(self.group == 1)}
+        self.stage = next(file[s] for s in ("refine", "search", "form") if s in file)
+        self.case = yaml.safe_load(file["case/text"][()].decode())
+        self.states = ["nominal"]
+        for row in self.case.get("load_cases", []):
+            self.states += [row["name"]] * (row["name"] not in self.states)
+
+    def shape(self, state):
+        of = self.stage if state == "nominal" else self.file["load_cases"][state]
+        return of["position_m"][:], of["tension_N"][:]
+
+    def mass_per_length(self):
+        mu = np.full(len(self.end), np.nan)
+        for row in self.case["cables"]:
+            if "mass_kg_per_m" in row:
+                mu[self.set[row.get("set", "")]] = row["mass_kg_per_m"]
+        return mu
+
+    # ---- figures of a shape ----
+
+    def pull(self, x, tension):
+        d = x[self.end[:, 1]] - x[self.end[:, 0]]
+        force = tension[:, None] * d / np.linalg.norm(d, axis=1)[:, None]
+        sum_of = np.zeros_like(x)
+        np.add.at(sum_of, self.end[:, 0], force)
+        np.add.at(sum_of, self.end[:, 1], -force)
+        return np.linalg.norm(sum_of[self.role == 0], axis=1).max()
+
+    def is_slack(self, tension):
+        return np.abs(tension) < SLACK * self.stage["tension_N"][:].max()
+
+    def loose(self, tension):
+        """Returns the free nodes at which no taut cable ends."""
+        held = np.zeros(len(self.role), bool)
+        held[self.end[~self.is_slack(tension)].ravel()] = True
+        return ~held & (self.role != 0)
+
+    def figure(self, row, state, is_minimum):
+        x, tension = self.shape(state)
+        cables, what = self.set[row["set"]], row["figure"]
+        of_set = tension[cables]
+        if what == "tension":
+            return of_set.min() if is_minimum else of_set.max()
+        if what == "ratio":
+            return np.inf if self.is_slack(of_set.min()) else of_set.max() / of_set.min()
+        if what == "slack_cables":
+            return float(self.is_slack(of_set).sum())
+        if what == "loose_nodes":
+            return float(self.loose(tension).sum())
+        if what == "pull":
+            return self.pull(x, tension)
+        if what == "mass":
+            length = np.linalg.norm(x[self.end[:, 1]] - x[self.end[:, 0]], axis=1)
+            return (self.mass_per_length() * length / (1 + tension / self.EA))[cables].sum()
+        if what == "psi":
+            counted = (self.role == 1) & ~self.loose(tension)
+            return np.sqrt(((x - self.target)[counted] ** 2).sum(1).mean())
+        if what == "deflection":
+            assert state == "nominal", "the oracle does not know the truss alone"
+            node, moved = self.file["coupling/node"][:], self.file["coupling/displacement_m"][:]
+            rest = self.file["form/position_m"][:][node] - moved
+            return np.linalg.norm(x[node] - rest, axis=1).max()
+        points, weight = (self.facet_points(x) if what == "facets"
+                          else (x[self.role == 1], np.ones((self.role == 1).sum())))
+        return self.half_path(points, weight, row["feed"] == "refocused")
+
+    # ---- surfaces: paraboloids z = (x^2 + y^2)/(4 f) ----
+
+    def facet_points(self, x):
+        """Returns points of quadrature on the triangles of the front cables, and projected areas as weights."""
+        near = {}
+        for name, cables in self.set.items():
+            for a, b in self.end[cables] if name.startswith("front") else []:
+                near.setdefault(a, set()).add(b)
+                near.setdefault(b, set()).add(a)
+        rim = [a for a in near if self.role[a] == 0]  # straight lines between neighbouring supports close the rim
+        middle = self.target[rim].mean(0)
+        rim.sort(key=lambda a: np.arctan2(*(self.target[a] - middle)[:2]))
+        for a, b in zip(rim, rim[1:] + rim[:1]):
+            if near[a] & near[b]:
+                near[a].add(b)
+                near[b].add(a)
+        corner = x[np.array([(a, b, c) for a in near for b in near[a] if a < b
+                             for c in near[a] & near[b] if b < c])]
+        at, w = np.polynomial.legendre.leggauss(5)
+        u, v = np.meshgrid((at + 1) / 2, (at + 1) / 2)
+        share, w = u.ravel(), np.outer(w, w).ravel() * u.ravel() / 2  # rule of Gauss collapsed at a corner
+        b, c = share * (1 - v.ravel()), share * v.ravel()
+        p = np.einsum("qk,tkc->tqc", np.stack([1 - b - c, b, c], axis=1), corner)
+        e, g = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+        area = np.abs(e[:, 0] * g[:, 1] - e[:, 1] * g[:, 0]) / 2
+        return p.reshape(-1, 3), (area[:, None] * w).ravel()
+
+    def half_path(self, p, weight, is_refocused):
+        f = self.case["scene"]["paraboloid"]["focal_length_m"]
+        root = np.sqrt(weight / weight.sum())
+        middle = (p.max(0) + p.min(0)) / 2
+        half_width = np.linalg.norm((p - middle)[:, :2], axis=1).max()
+
+        def errors(q):
+            """q: rotations about x and y, shift along z, relative focal length, shifts along x and y."""
+            (sa, sb), (ca, cb) = np.sin(q[:2]), np.cos(q[:2])
+            x, y, z = (p - [q[4], q[5], q[2]]).T
+            y, z = ca * y - sa * z, sa * y + ca * z
+            x, z = cb * x + sb * z, cb * z - sb * x
+            k = 1 / (4 * f * (1 + q[3]))
+            return root * (z - k * (x**2 + y**2)) / (1 + 4 * k * k * (x**2 + y**2))
+
+        if not is_refocused:
+            return np.linalg.norm(errors(np.zeros(6)))
+        best, options = np.zeros(6), {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15, "x_scale": "jac"}
+        for n in (3, 4, 6):
+            fit = least_squares(lambda q: errors(np.append(q, np.zeros(6 - n))), best[:n] + 1e-9 * (n == 6), **options)
+            if n < 6 or np.hypot(*fit.x[4:]) < 0.1 * half_width:
+                best = np.append(fit.x, np.zeros(6 - n))
+        return np.linalg.norm(errors(best))
+
+
+# ---- verdicts ----
+
+def margin_of(row, low, high):
+    """Returns the margin of values of the columns of at_least and at_most; no value has a margin of -inf."""
+    margin = np.minimum(np.where(np.isnan(row["at_least"]), np.inf, low - row["at_least"]),
+                        np.where(np.isnan(row["at_most"]), np.inf, row["at_most"] - high))
+    has_no = (~np.isnan(row["at_least"]) & np.isnan(low)) | (~np.isnan(row["at_most"]) & np.isnan(high))
+    return np.where(has_no, -np.inf, margin)
+
+
+def states_of(result, row):
+    return result.states if row["load_case"] == "all" else [row["load_case"]]
+
+
+def column_name(row, is_minimum):
+    name = row["figure"] + ({True: "_min", False: "_max"}[is_minimum] if row["figure"] == "tension" else "")
+    name += "_" + row["feed"] if row["figure"] in ("surface", "facets") else ""
+    return name + ("_" + row["set"] if row["set"] else "")
+
+
+def judge_samples(result, row, said):
+    columns = []
+    for state in states_of(result, row):
+        of = result.file["tolerance/load_case"][state]
+        low, high = (of[column_name(row, k)][:] if not np.isnan(row[key]) else None
+                     for k, key in ((True, "at_least"), (False, "at_most")))
+        low, high = (high if low is None else low), (low if high is None else high)
+        columns.append(margin_of(row, low, high))
+    margin, share = np.min(columns, axis=0), row["share"]
+    n, met = len(margin), int((margin >= 0).sum())
+    low = beta.ppf(0.025, met, n - met + 1) if met else 0.0
+    high = beta.ppf(0.975, met + 1, n - met) if met < n else 1.0
+    verdict = ("none" if share == 0 else "pass" if low >= share else "fail" if high < share else "undecided")
+    quantile = np.sort(margin)[min(int(np.floor((1 - share) * n + 1e-9)), n - 1)]
+    assert (quantile >= 0) == (met >= share * n - 1e-9), "quantile and yield"
+    assert said["verdict"] == verdict, (said["verdict"], verdict)
+    assert said["yield"] == met / n and said["margin"] == quantile
+    assert np.allclose([said["yield_low"], said["yield_high"]], [low, high], rtol=1e-6, atol=1e-9)
+    worst = int(np.argmin(margin))
+    assert said["worst_sample"] == worst and said["worst_margin"] == margin[worst]
+    at = states_of(result, row)[int(np.argmin([c[worst] for c in columns]))]
+    assert said["worst_load_case"] == at, (said["worst_load_case"], at)
+    return quantile, 0.0
+
+
+def judge_nominal(result, row, said):
+    margin = []
+    for state in states_of(result, row):
+        low, high = result.figure(row, state, True), result.figure(row, state, False)
+        margin.append(float(margin_of(row, np.array(low), np.array(high))))
+    least = min(margin)
+    scale = max(abs(row["at_least"]) if not np.isnan(row["at_least"]) else 0, abs(said["value"]), 1e-300)
+    off = abs(said["margin"] - least) / scale
+    most = QUADRATURE if row["figure"] == "facets" else TOLERANCE
+    assert off == 0 if row["figure"] in COUNT else off < most, (said["margin"], least)
+    at = states_of(result, row)[int(np.argmin(margin))]
+    ties = sorted(margin)[1] - least < 1e-9 * scale if len(margin) > 1 else False
+    assert ties or said["worst_load_case"] == at, (said["worst_load_case"], at)
+    error = 0 if np.isnan(said["error_bound"]) else said["error_bound"]
+    assert abs(least) > error or row["figure"] in COUNT, "this row cannot be judged from its value"
+    assert said["verdict"] == ("pass" if least >= 0 else "fail"), said["verdict"]
+    return least, off if most == TOLERANCE else 0.0
+
+
+def main(path):
+    worst, count = 0.0, {}
+    with h5py.File(path) as file:
+        result, of = Result(file), file["requirements"]
+        table = {key: words(of[key]) if of[key].dtype.kind in "OS" else of[key][:].tolist() for key in of}
+        for k in range(len(table["figure"])):
+            said = {key: table[key][k] for key in table}
+            row = {key: said[key] for key in ("figure", "set", "feed", "load_case", "at_least", "at_most", "share")}
+            judge = judge_nominal if np.isnan(row["share"]) else judge_samples
+            margin, off = judge(result, row, said)
+            bound = said["bound"]
+            if np.isfinite(said["value"]):
+                value = said["value"] - bound if bound == row["at_least"] else bound - said["value"]
+                assert abs(value - said["margin"]) <= 1e-15 * abs(bound) + 1e-15, "value and margin"
+            assert bound in (row["at_least"], row["at_most"])
+            if bound != 0 and np.isfinite(margin):
+                assert abs(said["relative_margin"] - said["margin"] / abs(bound)) < 1e-12
+            else:
+                assert not np.isfinite(said["relative_margin"])
+            worst, count[said["verdict"]] = max(worst, off), count.get(said["verdict"], 0) + 1
+            print(f"{said['verdict']:9}  {row['figure']:12} {row['set']:10} margin {margin:.6g}, differs by {off:.1e}")
+    figures.worst(worst, TOLERANCE, "margins of nominal rows, relative to their values")
+    print(" ".join(f"{word} {count[word]}" for word in sorted(count)))
+
+
+main(sys.argv[1])

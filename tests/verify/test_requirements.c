@@ -1,0 +1,34 @@
+/* Verdicts on the requirements of shipped cases against an oracle in another language, which recomputes them from the
+ * samples and shapes in the result file: samples in load cases, samples of an optimised net on its truss, and nominal
+ * figures in load cases. */
+#include "../cli/cli.h"
+
+static const struct {
+    const char *path, *set[2], *verdicts;
+} row[] = {
+    {"configs/dish-8m.yaml", {"form.pretension_N=40", "tolerance.samples=400"}, "\npass 7\n"},
+    {"configs/dish-8m.yaml", {"form.pretension_N=25", "tolerance.samples=400"}, "\nfail 3 pass 3 undecided 1\n"},
+    {"configs/survive.yaml", {"optimize.samples=16", "tolerance.samples=200"}, "\npass 5\n"},
+    {"configs/paraboloid-load-cases.yaml", {NULL}, "\nfail 2 pass 7\n"},
+    {"configs/paraboloid-load-cases.yaml", {"form.pretension_N=40", "truss.E_Pa=200e9"}, NULL},
+};
+
+START_TEST(verdicts_agree_with_the_oracle)
+{
+    const char *result = temp("r.h5"), *oracle = keep(source_path("tests/verify/requirements_oracle.py"));
+    HIFDM(0, "run", keep(source_path(row[_i].path)), "-o", result, "--quiet", row[_i].set[0] ? "--set" : NULL,
+          row[_i].set[0], "--set", row[_i].set[1]);
+    const char *const check[] = {python_program(), oracle, result, NULL};
+    demand_exit(run_command(HANG_S, check), 0, "requirements_oracle.py", __LINE__);
+    if (row[_i].verdicts) OUT(row[_i].verdicts);
+}
+END_TEST
+
+Suite *suite_verify_requirements(void)
+{
+    Suite *suite = suite_create("verify/requirements");
+    TCase *tcase = tcase_create("verdicts");
+    tcase_add_loop_test(tcase, verdicts_agree_with_the_oracle, 0, (int)(sizeof row / sizeof *row));
+    suite_add_tcase(suite, tcase);
+    return suite;
+}
