@@ -133,6 +133,6 @@ void hf_print_requirements(const hf_summary *s, hf_print_style style, FILE *f)
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     for (int i = 0; i < n_shown; i++)
         print_row(row[i], width, f);
-    if (n_shown < n) fprintf(f, "                %d more row%s: --verbose shows them\n", n - n_shown,
-                               n - n_shown == 1 ? "" : "s");
+    if (n_shown < n)
+        fprintf(f, "                %d more row%s: --verbose shows them\n", n - n_shown, n - n_shown == 1 ? "" : "s");
 }

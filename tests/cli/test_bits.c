@@ -4,8 +4,8 @@
  * Every file of configs/ is here, so a new one needs a row. Overrides of cases, and shares and edits of studies, keep
  * the suite within some seconds, and within a minute where fused multiply-adds are emulated. Four kinds of data sets
  * are left out (bits() in expect.py): texts of the case; measures of the surface, whose best fit is GSL's; verdicts,
- * whose intervals have last bits of the C library; and condition numbers, which LAPACK estimates. tools/same_bits.sh compares processors, compilers and LAPACKs,
- * tools/aarch64.sh another architecture. */
+ * whose intervals have last bits of the C library; and condition numbers, which LAPACK estimates. tools/same_bits.sh
+ * compares processors, compilers and LAPACKs, tools/aarch64.sh another architecture. */
 #include "cli.h"
 
 #include <dirent.h>
