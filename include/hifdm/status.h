@@ -33,7 +33,7 @@ HF_API_BEGIN
     X(TRUSS_TOO_SOFT, 9, "truss_too_soft", .exit_code = 4,                                                             \
       .text = "the truss is too soft for the pretension of its net")                                                   \
     X(MECHANISM, 10, "mechanism", .exit_code = 4, .text = "the truss is a mechanism, or too few supports hold it")     \
-    X(OUT_OF_LIMITS, 12, "out_of_limits", .exit_code = 4, .text = "the shape breaks a row of optimize.limits")         \
+    X(OUT_OF_LIMITS, 12, "out_of_limits", .exit_code = 4, .text = "the shape breaks a limit or a requirement")         \
     X(POINTS_FAILED, 11, "points_failed", .exit_code = 3, .text = "some points of the sweep failed")                   \
     X(BAD_USAGE, 20, "bad_usage", .exit_code = 2, .text = "the command line is not understood")                        \
     X(BAD_CASE, 21, "bad_case", .exit_code = 2, .text = "the case has errors")                                         \

@@ -8,6 +8,7 @@
 #include "net/target_surface.h"
 #include "net/variables.h"
 #include "run/feasible.h"
+#include "run/problem_nets.h"
 #include "run/problem_parts.h"
 #include "search/refine.h"
 #include "search/sensitivity.h"
@@ -615,13 +616,15 @@ const char *hf_no_design_cap(const hf_problem *p, double boundary_tension_ratio,
     return text;
 }
 
-/* Writes which limit the shape in the workspace exceeds most, ": tension of cable c7 is 9, but the
+/* Evaluates a design, and writes which limit or requirement its shape breaks most, ": tension of cable c7 is 9, but the
  * bound of optimize.limits.1 is 50", or "". */
-static void name_broken(const hf_problem *p, const hf_workspace *w, const hf_form_result *r,
-                        char text[2 * HF_HELD_NAME_SIZE])
+static void name_broken(hf_problem *p, const double *design, hf_form_result *r, char text[2 * HF_HELD_NAME_SIZE])
 {
     *text = '\0';
-    if (hf_status_has_shape(r->status)) hf_limits_name_broken(&p->evaluator, &p->scene, w, text, 2 * HF_HELD_NAME_SIZE);
+    hf_evaluate(&p->evaluator, design, &p->workspace, &p->point, r);
+    if (!hf_status_has_shape(r->status)) return;
+    hf_limits_name_broken(&p->evaluator, &p->scene, &p->workspace, text, 2 * HF_HELD_NAME_SIZE);
+    if (!*text) hf_problem_broken_requirement(p, text, 2 * HF_HELD_NAME_SIZE);
 }
 
 /* Writes "Raise form.pretension_N to 12 N, " for the advice "raise form.pretension_N to 12 N", or "" for none. Returns
@@ -640,14 +643,15 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const cha
     const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
     hf_form_result base;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
-    const hf_workspace *w = hf_batch_run_one(&p->batch, of->initial, &base);
-    name_broken(p, w, &base, broken);
-    if (above > 0 && o->n_limit > 0)
+    name_broken(p, of->initial, &base, broken);
+    bool is_required = p->objectives.constraints;
+    if (above > 0 && (o->n_limit > 0 || is_required))
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: the search found no feasible design, because %ld of %ld evaluations exceed "
-                        "optimize.limits or boundary_ratio_cap%s%s. %s%soosen the limits, or widen %s%s",
-                        above, of->n_evaluation, *broken ? "; of the initial design, the" : "",
-                        broken + (*broken == ':'), begin_with(advice, first), *advice ? "l" : "L", wider,
+                        "optimize.limits%s or boundary_ratio_cap%s%s. %s%soosen the limits, or widen %s%s",
+                        above, of->n_evaluation, is_required ? ", requirements" : "",
+                        *broken ? "; of the initial design, the" : "", broken + (*broken == ':'),
+                        begin_with(advice, first), *advice ? "l" : "L", wider,
                         hf_no_design_cap(p, base.boundary_tension_ratio, hint));
     if (above == 0)
         return hf_error(messages, HF_NO_FEASIBLE,
@@ -670,8 +674,7 @@ const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_statu
 {
     hf_form_result start;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
-    hf_evaluate(&p->evaluator, design, &p->workspace, &p->point, &start);
-    name_broken(p, &p->workspace, &start, broken);
+    name_broken(p, design, &start, broken);
     snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s%s%s%s",
              hf_status_text(status), broken, *advice ? ". " : "", begin_with(advice, first),
              *advice ? "or loosen the limits" : "", hf_no_design_cap(p, start.boundary_tension_ratio, hint));

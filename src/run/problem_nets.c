@@ -8,6 +8,7 @@
 #include "run/tolerance_stage.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 struct hf_problem_nets {
@@ -139,6 +140,26 @@ void hf_problem_nets_free(hf_problem *p)
 const hf_constraints *hf_problem_constraints_of(const hf_problem *p)
 {
     return p->nets && p->nets->constraints.as.n > 0 ? &p->nets->constraints.as : NULL;
+}
+
+const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_t size)
+{
+    const hf_constraints *c = p->objectives.constraints;
+    char name[256];
+    int worst = -1;
+    *text = '\0';
+    for (int k = 0; c && k < c->n; k++) {
+        double beyond = p->point.constraint[k] / c->unit[k];
+        if (beyond > 0 && (worst < 0 || beyond > p->point.constraint[worst] / c->unit[worst])) worst = k;
+    }
+    if (worst < 0) return text;
+    int row = p->nets->constraints.row[worst];
+    const hf_requirement_settings *r = &p->settings.requirement[row];
+    /* A count is judged by tensions. */
+    const char *unit = r->figure == HF_REQUIRED_SLACK ? "N" : hf_required_figure_unit[r->figure];
+    snprintf(text, size, ": row %d of requirements (%.160s) is not met by %.3g%s%s", row,
+             hf_requirement_name(r, name, sizeof name), p->point.constraint[worst], *unit ? " " : "", unit);
+    return text;
 }
 
 const hf_objectives_nets *hf_problem_nets_of(const hf_problem *p)
