@@ -139,7 +139,7 @@ START_TEST(schema_is_yaml_with_every_key)
     EXPECT(
         schema, "--",
         "list(a) == ['title', 'scene', 'surface', 'form', 'optimize', 'tolerance', 'truss', 'coupling', "
-        "'adjust', 'sweep', 'cables', 'nodes', 'load_cases']",
+        "'adjust', 'sweep', 'cables', 'nodes', 'load_cases', 'requirements']",
         "set(a['scene']) == {'parabolic_cylinder', 'paraboloid', 'import'}",
         "set(a['scene']['parabolic_cylinder']) == {'aperture_m', 'length_m', 'focal_length_m', 'modules', "
         "'cells_per_module', 'pitches_x_m', 'pitches_y_m', 'pattern', 'spacing', 'boundary', 'scallop', 'supports', "
@@ -184,7 +184,7 @@ START_TEST(schema_is_yaml_with_every_key)
     OUT("\n  #   bounds: [low, high], of which one may be null; required.\n");
     OUT("\n  #   target: number; may be left out.\n");
     OUT("\n  #   mass_kg_per_m: number > 0; kg/m; may be left out.\n");
-    OUT("\n  #   link: each | set | symmetry; default each.\n");
+    OUT("\n  #   link: each | set | symmetry | scale; default each.\n");
 }
 END_TEST
 

@@ -97,7 +97,9 @@ START_TEST(a_failed_optimisation_says_so_first)
         EXPECT(data_of(page, "f.json"), text, told, "--", "a['summary']['status'] == 'no_feasible'",
                "len(a['summary']['errors']) == 1",
                "a['answer'].startswith(f\"failed: {a['summary']['errors'][0]}; the form-finding has psi \")",
-               "[t.decode().split('\\n')[0] for t in (b, c)] == [a['answer']] * 2");
+               "b.decode().split('\\n')[0] == a['answer']",
+               /* after a run, the error is printed below its summary */
+               "c.decode().startswith('failed: no design met the constraints; the form-finding has psi ')");
     }
     const char *const argv[] = {
         python_program(), "-c",

@@ -119,7 +119,7 @@ END_TEST
 START_TEST(cables_between_the_same_nodes_are_told)
 {
     char cables[2048] = SLACK_CABLES "twin,d,b,inner,force_density,0.01\n";
-    HIFDM(0, "check", net_with(SLACK_NODES, cables));
+    HIFDM(3, "check", net_with(SLACK_NODES, cables));
     ERRS("warning: %s:7: cable 'twin' joins the same two nodes as cable 'bd'\n", temp("cables.csv"));
     ck_assert_int_eq(count_of(said.err, "joins the same"), 1);
     for (int i = 0; i < 9; i++)

@@ -96,7 +96,8 @@ ROWS = [
 # What each section of a case and each method of the search makes run: table.py holds them against `hifdm schema`.
 SECTIONS = {"title": None, "scene": None, "cables": None, "nodes": None, "truss": "all stages",
             "coupling": "all stages", "form": "form-finding", "optimize": "search by GA", "surface": "far field",
-            "tolerance": "`tolerance`", "load_cases": "load cases", "adjust": "`adjust`", "sweep": "`sweep`"}
+            "tolerance": "`tolerance`", "requirements": "`tolerance`", "load_cases": "load cases", "adjust": "`adjust`",
+            "sweep": "`sweep`"}
 FILLER = "filler"  # takes the room of a full disk
 METHODS = {"ga": "search by GA", "lm": "refinement by LM", "ga+lm": "all stages"}
 
