@@ -29,7 +29,7 @@ LISTED(static const hf_hdf5_kind kind_of_bound_reason, bound, HF_BOUND_REASON_LI
 #define WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word), word, NULL
 #define ENDED_WORDS(word) HF_HDF5_ENUM, HF_HDF5_COUNT(word) - 1, word, NULL
 const hf_hdf5_kind hf_layout_role = {WORDS(hf_role_word)}, hf_layout_group = {WORDS(hf_group_word)};
-const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)};
+const hf_hdf5_kind hf_layout_law = {WORDS(hf_law_word)}, hf_layout_verdict = {WORDS(hf_verdict_word)};
 static const hf_hdf5_kind kind_of_joint = {ENDED_WORDS(hf_joint_word)}, kind_of_unit = {WORDS(hf_unit_word)};
 static const hf_hdf5_kind kind_of_search_stop = {WORDS(hf_population_stop_word)};
 static const hf_hdf5_kind kind_of_refine_stop = {WORDS(hf_refine_stop_word)};

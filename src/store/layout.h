@@ -26,7 +26,7 @@
 
 /* ---- Enumerations: words and values from the engine's own lists ---- */
 
-extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status;
+extern const hf_hdf5_kind hf_layout_role, hf_layout_group, hf_layout_law, hf_layout_status, hf_layout_verdict;
 #define HF_KIND_ROLE (&hf_layout_role)
 #define HF_KIND_GROUP (&hf_layout_group)
 #define HF_KIND_LAW (&hf_layout_law)

@@ -37,10 +37,14 @@ bool hf_ledger_is_circumstance(const hf_ledger_number *number);
 /* ---- The fields of a row: the numbers, then lists as texts (ledger_fields.c) ---- */
 
 /* The lists of a row, each a text "name=value name=value": the objectives of each stage, the surface errors of each
- * stage, and the figures of the load cases. The surface errors are those of the facets if there are any, else those of
- * the nodes. The names of the last list are NAME.FIGURE here and NAME/FIGURE in a merge. */
-enum { HF_LEDGER_LIST_CASES = 2 * HF_N_STAGE, HF_LEDGER_N_LIST };
+ * stage, the figures of the load cases, and the verdicts on the rows of `requirements`. The surface errors are those of
+ * the facets if there are any, else those of the nodes. The names of load cases are NAME.FIGURE here and NAME/FIGURE in
+ * a merge. The verdicts are n_failed, n_undecided and relative_margin_min, and for row k verdict_k (of hf_verdict),
+ * margin_k and relative_margin_k. */
+enum { HF_LEDGER_LIST_CASES = 2 * HF_N_STAGE, HF_LEDGER_LIST_REQUIREMENTS, HF_LEDGER_N_LIST };
 #define HF_LEDGER_LOAD_CASES "/load_cases"
+#define HF_LEDGER_REQUIREMENTS "/requirements"
+#define HF_LEDGER_REQUIREMENT_SIZE 256 /* size in bytes of the name of a requirement */
 typedef struct {
     const char *field; /* name of the list in a header, after its group */
     const char *group; /* in a merge: group of its values below /points */
@@ -48,10 +52,12 @@ typedef struct {
 } hf_ledger_list;
 extern const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST];
 
-/* hf_ledger_n_field returns the number of fields, HF_LEDGER_N_LIST more than columns. hf_ledger_field_name writes the
- * name of field i into text[size]. hf_ledger_print_field writes its value, and nothing if the field does not apply.
- * Both return the number of bytes, like snprintf. */
+/* hf_ledger_n_field returns the number of fields: the columns, the lists, and the names of the requirements, which ';'
+ * separates. hf_ledger_names_field returns the index of the last. hf_ledger_field_name writes the name of field i into
+ * text[size]. hf_ledger_print_field writes its value, and nothing if the field does not apply. Both return the number
+ * of bytes, like snprintf. */
 int hf_ledger_n_field(void);
+int hf_ledger_names_field(void);
 int hf_ledger_field_name(int i, char *text, size_t size);
 int hf_ledger_print_field(int i, const hf_summary *summary, char *text, size_t size);
 

@@ -1,6 +1,6 @@
 /* The fields of a ledger row, made from the summary of a point. First come its numbers. Then come lists as texts: for
- * each stage the objectives and the surface errors, and one for the load cases. They are texts because the values may
- * differ from point to point. Sections: numbers, lists, fields, reading lists. */
+ * each stage the objectives and the surface errors, one for the load cases and one for the requirements. They are texts
+ * because the values may differ from point to point. Sections: numbers, lists, fields, reading lists. */
 #include "store/ledger.h"
 
 #include <inttypes.h>
@@ -61,7 +61,7 @@ const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST] = {
     {"objectives", "/form", "objective_"},   {"objectives", "/search", "objective_"},
     {"objectives", "/refine", "objective_"}, {"errors", "/surface/form", ""},
     {"errors", "/surface/search", ""},       {"errors", "/surface/refine", ""},
-    {"figures", HF_LEDGER_LOAD_CASES, ""}};
+    {"figures", HF_LEDGER_LOAD_CASES, ""},   {"verdicts", HF_LEDGER_REQUIREMENTS, ""}};
 
 /* Writes the objectives of a stage: "objective_0_psi=0.001 objective_1_tension_edge=3". Returns the length. */
 static int print_objectives(const hf_summary *s, int stage, char *text, size_t size)
@@ -127,17 +127,57 @@ static int print_load_cases(const hf_summary *s, char *text, size_t size)
     return (int)used;
 }
 
+/* Writes the verdicts: "n_failed=1 n_undecided=0 relative_margin_min=-0.1 verdict_0=1 margin_0=-0.5 ...". The minimum
+ * of the relative margins leaves out rows without a verdict and rows whose bound is 0; without any other row it is
+ * NaN. Returns the length. */
+static int print_verdicts(const hf_summary *s, char *text, size_t size)
+{
+    int count[HF_VERDICT_N] = {0};
+    double least = (double)NAN;
+    if (s->n_requirement == 0) return 0;
+    for (int i = 0; i < s->n_requirement; i++) {
+        const hf_requirement_verdict *v = &s->requirement[i];
+        count[v->verdict]++;
+        if (v->verdict != HF_VERDICT_NONE) least = fmin(least, v->relative_margin); /* fmin ignores NaN */
+    }
+    size_t used = (size_t)snprintf(text, size, "n_failed=%d n_undecided=%d relative_margin_min=%.17g",
+                                   count[HF_VERDICT_FAIL], count[HF_VERDICT_UNDECIDED], least);
+    for (int i = 0; i < s->n_requirement && used < size; i++) {
+        const hf_requirement_verdict *v = &s->requirement[i];
+        used += (size_t)snprintf(text + used, size - used, " verdict_%d=%d margin_%d=%.17g relative_margin_%d=%.17g", i,
+                                 (int)v->verdict, i, v->margin, i, v->relative_margin);
+    }
+    return (int)used;
+}
+
+/* Writes the names of the requirements: "tension of tie, all load cases;slack_cables". Returns the length. */
+static int print_names(const hf_summary *s, char *text, size_t size)
+{
+    char name[HF_LEDGER_REQUIREMENT_SIZE];
+    size_t used = 0;
+    for (int i = 0; i < s->n_requirement && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ";" : "",
+                                 hf_requirement_name(&s->requirement[i].row, name, sizeof name));
+    return (int)used;
+}
+
 /* ---- fields ---- */
+
+int hf_ledger_names_field(void)
+{
+    return hf_ledger_n_column() + HF_LEDGER_N_LIST;
+}
 
 int hf_ledger_n_field(void)
 {
-    return hf_ledger_n_column() + HF_LEDGER_N_LIST;
+    return hf_ledger_names_field() + 1;
 }
 
 int hf_ledger_field_name(int i, char *text, size_t size)
 {
     hf_ledger_number number;
     if (hf_ledger_column(i, &number)) return snprintf(text, size, "%s/%s", number.object, number.field->name);
+    if (i == hf_ledger_names_field()) return snprintf(text, size, HF_LEDGER_REQUIREMENTS "/names");
     const hf_ledger_list *list = &hf_ledger_list_of[i - hf_ledger_n_column()];
     return snprintf(text, size, "%s/%s", list->group, list->field);
 }
@@ -148,6 +188,8 @@ int hf_ledger_print_field(int i, const hf_summary *s, char *text, size_t size)
     int list = i - hf_ledger_n_column(), stage = list % HF_N_STAGE;
     if (!s->stage[HF_STAGE_FORM].exists) return 0;
     if (hf_ledger_column(i, &number)) return hf_layout_has(s, number.part) ? print_number(&number, s, text, size) : 0;
+    if (i == hf_ledger_names_field()) return print_names(s, text, size);
+    if (list == HF_LEDGER_LIST_REQUIREMENTS) return print_verdicts(s, text, size);
     if (list == HF_LEDGER_LIST_CASES) return print_load_cases(s, text, size);
     if (list == stage) return print_objectives(s, stage, text, size);
     return print_errors(&s->surface.frequencies_Hz, &s->stage[stage].surface, "", text, size);

@@ -1,5 +1,5 @@
 /* Implements merge.h: checks that the output is no input and may be replaced, then writes the temporary file group by
- * group and publishes it. Sections: columns, inputs, outputs, lists, points, links, the file. */
+ * group and publishes it. Sections: columns, inputs, outputs, lists, requirements, points, links, the file. */
 #include "store/merge.h"
 
 #include "base/file_out.h"
@@ -21,7 +21,7 @@ typedef struct {
     const hf_study *study;
     const hf_points *points;
     hf_file_out out;
-    void *room; /* one column of any kind, of texts their pointers: [n_point][2] of 8 bytes */
+    void *room; /* one list of any kind, of texts their pointers: [n_point][HF_REQUIREMENT_ROWS_MAX] of 8 bytes */
 } merger;
 
 /* ---- columns ---- */
@@ -182,6 +182,97 @@ static void write_list(merger *m, int list)
     free(done);
 }
 
+/* ---- requirements ---- */
+
+/* Returns the name of requirement k in the names of a point, and its length in *n. Returns NULL if there is none. */
+static const char *name_at(const hf_point *p, int k, size_t *n)
+{
+    const char *name = p->field ? p->field[hf_ledger_names_field()] : "";
+    if (!*name) return NULL;
+    for (; k > 0 && name; k--)
+        if ((name = strchr(name, ';')) != NULL) name++;
+    if (name) *n = strcspn(name, ";");
+    return name;
+}
+
+/* Returns whether a name may be cut off here: at its end or before one of its parts. */
+static bool is_part_end(const char *name, const char *end)
+{
+    return name == end || *name == ',' || !strncmp(name, " of ", 4);
+}
+
+/* Writes the parts of the name of requirement k that all points have in common, because axes may change a row. Without
+ * a common part the name is the key of the row. Returns false if no point has such a row. */
+static bool name_row(const merger *m, int k, char name[HF_LEDGER_REQUIREMENT_SIZE])
+{
+    bool has_any = false;
+    for (int i = 0; i < m->points->n_point; i++) {
+        size_t n, same = 0, length = strlen(name);
+        const char *other = name_at(&m->points->point[i], k, &n);
+        if (!other) continue;
+        if (!has_any) snprintf(name, HF_LEDGER_REQUIREMENT_SIZE, "%.*s", (int)n, other);
+        if (!has_any) length = strlen(name);
+        has_any = true;
+        while (same < length && same < n && name[same] == other[same])
+            same++;
+        while (same > 0 && !(is_part_end(name + same, name + length) && is_part_end(other + same, other + n)))
+            same--;
+        name[same] = '\0';
+    }
+    if (has_any && !*name) snprintf(name, HF_LEDGER_REQUIREMENT_SIZE, "requirements.%d", k);
+    return has_any;
+}
+
+/* Writes one number of each requirement for all points. */
+static void write_of_rows(merger *m, hid_t group, const char *figure, int n_row, const hf_hdf5_kind *kind,
+                          const char *description)
+{
+    char name[HF_OBJECTIVE_NAME_SIZE];
+    for (int i = 0; i < m->points->n_point; i++)
+        for (int k = 0; k < n_row; k++) {
+            snprintf(name, sizeof name, "%s_%d", figure, k);
+            double value = value_in(&m->points->point[i], HF_LEDGER_LIST_REQUIREMENTS, name);
+            ptrdiff_t at = (ptrdiff_t)i * n_row + k;
+            if (kind == HF_KIND_REAL)
+                ((double *)m->room)[at] = value;
+            else
+                ((signed char *)m->room)[at] =
+                    (signed char)(value >= 0 && value < HF_VERDICT_N ? (int)value : (int)HF_VERDICT_NONE);
+        }
+    write_column(m, group, figure, kind, n_row, "", description);
+}
+
+/* Writes the verdicts on the requirements. A study without requirements has no such group. */
+static void write_requirements(merger *m)
+{
+    static const char *const figure[][2] = {
+        {"n_failed", "number of requirements that fail"},
+        {"n_undecided", "number of requirements that are undecided"},
+        {"relative_margin_min", "smallest relative margin; NaN: no requirement has one"}};
+    char(*name)[HF_LEDGER_REQUIREMENT_SIZE] = calloc(HF_REQUIREMENT_ROWS_MAX, sizeof *name);
+    const char *names[HF_REQUIREMENT_ROWS_MAX];
+    int n_row = 0;
+    if (!name) m->io.status = hf_error(m->io.messages, HF_NO_MEMORY, "%s: out of memory", m->io.path);
+    while (name && n_row < HF_REQUIREMENT_ROWS_MAX && name_row(m, n_row, name[n_row])) {
+        names[n_row] = name[n_row];
+        n_row++;
+    }
+    if (n_row > 0) {
+        hid_t group = hf_hdf5_make_group(&m->io, "/points" HF_LEDGER_REQUIREMENTS);
+        hf_hdf5_write_ids(&m->io, group, "name", names, n_row, "requirement of each column; parts that vary left out");
+        for (int k = 0; k < HF_HDF5_COUNT(figure); k++) {
+            for (int i = 0; i < m->points->n_point; i++)
+                ((double *)m->room)[i] = value_in(&m->points->point[i], HF_LEDGER_LIST_REQUIREMENTS, figure[k][0]);
+            write_column(m, group, figure[k][0], HF_KIND_REAL, 0, "", figure[k][1]);
+        }
+        write_of_rows(m, group, "verdict", n_row, &hf_layout_verdict, "verdict on each requirement");
+        write_of_rows(m, group, "margin", n_row, HF_KIND_REAL, "signed distance from the bound, unit of the figure");
+        write_of_rows(m, group, "relative_margin", n_row, HF_KIND_REAL, "margin relative to the bound; NaN: it is 0");
+        hf_hdf5_close(&m->io, group);
+    }
+    free(name);
+}
+
 /* ---- points ---- */
 
 static void write_points(merger *m)
@@ -203,8 +294,9 @@ static void write_points(merger *m)
     for (int i = 0; i < hf_ledger_n_column(); i++)
         write_output(m, group, i);
     hf_hdf5_close(&m->io, group);
-    for (int list = 0; list < HF_LEDGER_N_LIST; list++)
+    for (int list = 0; list < HF_LEDGER_LIST_REQUIREMENTS; list++)
         write_list(m, list);
+    write_requirements(m);
 }
 
 /* ---- links ---- */
@@ -376,7 +468,7 @@ static hf_status merge(merger *m, const char *folder, const char *output, bool f
     HF_TRY(hf_store_file_check(m->out.path, messages));
     HF_TRY(spare_inputs(m->study, folder, m->out.path, messages));
     if (!force) HF_TRY(check_output(m->out.path, messages));
-    m->room = calloc((size_t)m->study->n_point, 2 * sizeof(double));
+    m->room = calloc((size_t)m->study->n_point, HF_REQUIREMENT_ROWS_MAX * sizeof(double));
     if (!m->room) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", output);
     hf_hdf5_lock();
     m->io.status = hf_file_out_begin(output, &m->out, messages);
