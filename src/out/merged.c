@@ -1,9 +1,10 @@
 /* Reads a merged study and ranks its points:
  *
- *     tables of points ---> axes, figures of each stage ---> which figures vary ---> ranking figure ---> best point
- *       ---> whether the figure still falls at the end of an axis
+ *     tables of points ---> axes, figures of each stage ---> which figures vary ---> verdicts ---> ranking figure
+ *       ---> best point ---> whether the figure still improves at the end of an axis, intervals that pass
  *
- * Contents: reading, what varies, the best point, the end of an axis, the required yield. */
+ * Contents: reading, what varies, the required yield, verdicts, the best point, the end of an axis, intervals that
+ * pass. */
 #include "out/merged.h"
 
 #include "base/path.h"
@@ -12,6 +13,7 @@
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define SAME_RATIO 1e-6    /* relative difference up to which values count as equal */
@@ -22,7 +24,8 @@ const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open",
 
 const char *hf_merged_stage_word(hf_merged_stage stage)
 {
-    return stage < HF_MERGED_BUILT ? hf_stage_word[stage] : stage == HF_MERGED_BUILT ? "tolerance" : "load_cases";
+    static const char *const other[] = {"tolerance", "load_cases", "requirements"};
+    return stage < HF_MERGED_BUILT ? hf_stage_word[stage] : other[stage - HF_MERGED_BUILT];
 }
 
 /* ---- reading ---- */
@@ -109,6 +112,23 @@ static hf_status read_stage(hf_merged *m, hf_merged_stage stage, hf_messages *me
     HF_TRY(read_group(m, stage, group, "objective_", messages));
     if (m->n_figure > n_before + 1) HF_TRY(read_figure(m, stage, group, "merit", messages));
     return read_group(m, stage, surface, "", messages);
+}
+
+/* Reads the verdicts on the requirements. If a part is missing or does not fit, the study has none. */
+static hf_status read_requirements(hf_merged *m, hf_messages *messages)
+{
+#define REQUIREMENTS "/points/requirements"
+    HF_TRY(hf_store_read_texts(m->path, REQUIREMENTS "/name", &m->row_name, messages));
+    if (m->row_name.n == 0) return HF_OK;
+    HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/verdict", m->row_name.n, &m->row_verdict, messages));
+    HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/margin", m->row_name.n, &m->row_margin, messages));
+    HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/relative_margin", m->row_name.n, &m->row_relative_margin,
+                                messages));
+    if (m->row_verdict.n != m->n || m->row_margin.n != m->n || m->row_relative_margin.n != m->n) return HF_OK;
+    m->n_row = m->row_name.n;
+    HF_TRY(read_figure(m, HF_MERGED_REQUIREMENTS, REQUIREMENTS, "n_failed", messages));
+    HF_TRY(read_figure(m, HF_MERGED_REQUIREMENTS, REQUIREMENTS, "n_undecided", messages));
+    return read_figure(m, HF_MERGED_REQUIREMENTS, REQUIREMENTS, HF_MERGED_MARGIN, messages);
 }
 
 static hf_status read_axes(hf_merged *m, hf_messages *messages)
@@ -237,115 +257,6 @@ static hf_status choose_main(hf_merged *m, hf_messages *messages)
     return HF_OK;
 }
 
-/* ---- the best point ---- */
-
-/* Holds the figures that rank points: the first that varies, and a second one for points that are equal in it. */
-typedef struct {
-    int figure[2], n;
-} leads;
-
-/* Appends a figure to the ranking, if it varies and there is room. */
-static void try_lead(const hf_merged *m, hf_merged_stage stage, const char *key, leads *to)
-{
-    const hf_merged_figure *f = hf_merged_find(m, stage, key);
-    if (to->n < 2 && f && !f->is_same) to->figure[to->n++] = (int)(f - m->figure);
-}
-
-/* Returns the rounding of an objective. Values below it do not rank points. */
-static double rounding_of(const hf_merged *m, const char *objective)
-{
-    const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_FORM, objective);
-    double size = 0;
-    for (int i = 0; f && m->main != HF_MERGED_FORM && i < m->n; i++)
-        if (hf_merged_is_done(m, i)) size = fmax(size, fabs(f->value.value[i]));
-    return REACHED_RATIO * size;
-}
-
-/* Returns whether point i ranks before `best`, which is -1 for none. */
-static bool is_better(const hf_merged *m, const leads *by, double rounding, int i, int best)
-{
-    for (int k = 0; k < by->n && best >= 0; k++) {
-        const double *value = m->figure[by->figure[k]].value.value;
-        double floor = k ? 0 : rounding, a = fmax(value[i], floor), b = fmax(value[best], floor);
-        if (fabs(a - b) > SAME_RATIO * fmax(fabs(a), fabs(b))) return a < b;
-    }
-    return best < 0;
-}
-
-/* Chooses the ranking figures and the best point. The objective comes first where it is not psi alone, as merit if
- * there are several. Otherwise it is psi of the as-built nets where known, then psi of the result. The surface error
- * decides where psi is the same everywhere. */
-static void choose_best(hf_merged *m)
-{
-    static const char *const error[] = {"facet_half_path_rms_m", "half_path_rms_m", "facet_fit_half_path_rms_m",
-                                        "fit_half_path_rms_m"};
-    const char *objective = NULL;
-    bool has_other = false;
-    double rounding = 0;
-    leads by = {.n = 0};
-    for (int k = 0; k < m->n_figure; k++) {
-        if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "objective_", 10) != 0) continue;
-        objective = objective ? "merit" : m->figure[k].key;
-        has_other |= !m->figure[k].is_psi;
-    }
-    if (has_other) try_lead(m, m->main, objective, &by);
-    if (by.n) rounding = rounding_of(m, objective);
-    try_lead(m, HF_MERGED_BUILT, "psi_95_m", &by);
-    try_lead(m, m->main, "psi_m", &by);
-    for (size_t k = 0; k < sizeof error / sizeof *error; k++)
-        try_lead(m, m->main, error[k], &by);
-    m->lead = by.n ? by.figure[0] : -1;
-    m->best = -1;
-    for (int i = 0; i < m->n && by.n; i++)
-        if (hf_merged_is_done(m, i) && isfinite(m->figure[m->lead].value.value[i]) &&
-            is_better(m, &by, rounding, i, m->best))
-            m->best = i;
-    bool is_rounding = m->best >= 0 && m->figure[m->lead].value.value[m->best] <= rounding;
-    if (is_rounding && by.n > 1) m->lead = by.figure[1];
-}
-
-/* ---- the end of an axis ---- */
-
-/* Returns whether point i agrees with the best point in all axes but this one. */
-static bool is_on_curve(const hf_merged *m, int axis, int i)
-{
-    for (int a = 0; a < m->n_axis; a++)
-        if (a != axis && !agree(m, a, i, m->best)) return false;
-    return i != m->best;
-}
-
-/* Returns whether the ranking figure falls from point i to point j by more than rounding. */
-static bool falls(const hf_merged *m, int i, int j)
-{
-    const hf_merged_figure *f = &m->figure[m->lead];
-    double from = f->value.value[i], to = f->value.value[j], rounding = rounding_of(m, f->key);
-    if (!strcmp(hf_ledger_unit(f->key), "m")) rounding = fmax(rounding, RESOLVED_M);
-    return hf_merged_is_done(m, i) && from - to > fmax(rounding, SAME_RATIO * fmax(fabs(from), fabs(to)));
-}
-
-int hf_merged_falls_on(const hf_merged *m, int axis)
-{
-    const hf_series *s = &m->input[axis];
-    int near = -1, next = -1, side = 0; /* the two points nearest to the best one, both on the same side of it */
-    bool is_error = !strncmp(hf_texts_at(&m->input_name, axis), "tolerance.sigma_", 16);
-    if (m->best < 0 || !s->n || s->columns != 1 || is_error) return 0;
-    double at = s->value[m->best];
-    for (int i = 0; i < m->n; i++) {
-        double away = s->value[i] - at;
-        if (away == 0 || !is_on_curve(m, axis, i)) continue;
-        if (side && (away > 0) != (side > 0)) return 0;
-        side = away > 0 ? 1 : -1;
-        if (near < 0 || fabs(away) < fabs(s->value[near] - at)) {
-            next = near;
-            near = i;
-        } else if (next < 0 || fabs(away) < fabs(s->value[next] - at)) {
-            next = i;
-        }
-    }
-    if (next < 0 || !falls(m, next, near) || !falls(m, near, m->best)) return 0;
-    return -side;
-}
-
 /* ---- the required yield ---- */
 
 static double built_value(const hf_merged *m, const char *key, int i)
@@ -373,6 +284,257 @@ double hf_merged_required_yield(const hf_merged *m)
     return same;
 }
 
+/* ---- verdicts ---- */
+
+static hf_verdict verdict_of(const hf_merged *m, int i, int row)
+{
+    double verdict = m->row_verdict.value[(size_t)i * (size_t)m->n_row + (size_t)row];
+    return verdict >= 0 && verdict < HF_VERDICT_NONE ? (hf_verdict)verdict : HF_VERDICT_NONE;
+}
+
+/* Returns the row that decides. Rows without a relative margin come last among those of the same verdict. */
+static int tightest_of(const hf_merged *m, int i)
+{
+    static const hf_verdict order[] = {HF_VERDICT_FAIL, HF_VERDICT_UNDECIDED, HF_VERDICT_PASS};
+    for (size_t k = 0; k < sizeof order / sizeof *order; k++) {
+        int tightest = -1;
+        double least = INFINITY;
+        for (int row = 0; row < m->n_row; row++) {
+            double margin = m->row_relative_margin.value[(size_t)i * (size_t)m->n_row + (size_t)row];
+            if (verdict_of(m, i, row) != order[k] || (tightest >= 0 && !(margin < least))) continue;
+            tightest = row;
+            least = isnan(margin) ? (double)INFINITY : margin;
+        }
+        if (tightest >= 0) return tightest;
+    }
+    return -1;
+}
+
+static hf_merged_judgement judge(const hf_merged *m, int i)
+{
+    hf_merged_judgement j = {.verdict = HF_VERDICT_NONE, .tightest = -1};
+    int count[HF_VERDICT_N] = {0};
+    if (!hf_merged_is_done(m, i)) return j;
+    hf_merged_answer yield = hf_merged_meets_yield(m, i);
+    for (int row = 0; row < m->n_row; row++)
+        count[verdict_of(m, i, row)]++;
+    count[HF_VERDICT_PASS] += yield == HF_MERGED_YES;
+    count[HF_VERDICT_FAIL] += yield == HF_MERGED_NO;
+    count[HF_VERDICT_UNDECIDED] += yield == HF_MERGED_OPEN;
+    j.n_failed = count[HF_VERDICT_FAIL];
+    j.n_undecided = count[HF_VERDICT_UNDECIDED];
+    j.n_required = count[HF_VERDICT_PASS] + j.n_failed + j.n_undecided;
+    if (j.n_required == 0) return j;
+    j.verdict = j.n_failed ? HF_VERDICT_FAIL : j.n_undecided ? HF_VERDICT_UNDECIDED : HF_VERDICT_PASS;
+    j.tightest = tightest_of(m, i);
+    return j;
+}
+
+bool hf_merged_is_judged(const hf_merged *m)
+{
+    for (int i = 0; i < m->n; i++)
+        if (m->judgement[i].verdict != HF_VERDICT_NONE) return true;
+    return false;
+}
+
+/* Returns a negative number if point i ranks before point j by its verdicts, a positive one if after, 0 if they are
+ * equal. A point without a verdict ranks last, because it is not known to pass. */
+static int compare_verdicts(const hf_merged *m, int i, int j)
+{
+    hf_merged_judgement a = m->judgement[i], b = m->judgement[j];
+    bool has_a = a.verdict != HF_VERDICT_NONE, has_b = b.verdict != HF_VERDICT_NONE;
+    if (has_a != has_b) return has_a ? -1 : 1;
+    return a.n_failed != b.n_failed ? a.n_failed - b.n_failed : a.n_undecided - b.n_undecided;
+}
+
+bool hf_merged_is_margin(const hf_merged *m, int figure)
+{
+    return figure >= 0 && m->figure[figure].stage == HF_MERGED_REQUIREMENTS;
+}
+
+/* Returns the value of a figure that ranks, of which less is better. NaN ranks last. */
+static double rank_value(const hf_merged *m, int figure, int i)
+{
+    double value = m->figure[figure].value.value[i];
+    if (hf_merged_is_margin(m, figure)) value = -value;
+    return isnan(value) ? (double)INFINITY : value;
+}
+
+bool hf_merged_ranks_before(const hf_merged *m, int i, int j)
+{
+    int by_verdict = compare_verdicts(m, i, j);
+    if (by_verdict) return by_verdict < 0;
+    double a = m->lead < 0 ? 0 : rank_value(m, m->lead, i), b = m->lead < 0 ? 0 : rank_value(m, m->lead, j);
+    return a == b ? i < j : a < b;
+}
+
+/* ---- the best point ---- */
+
+/* Holds the figures that rank points: the first that varies, and others for points that are equal in it. Values below
+ * `floor` are equal. */
+enum { LEADS_MAX = 3 };
+typedef struct {
+    int figure[LEADS_MAX], n, most;
+    double floor[LEADS_MAX];
+} leads;
+
+/* Appends a figure to the ranking, if it varies and there is room. */
+static void try_lead(const hf_merged *m, hf_merged_stage stage, const char *key, leads *to)
+{
+    const hf_merged_figure *f = hf_merged_find(m, stage, key);
+    if (to->n < to->most && f && !f->is_same) to->figure[to->n++] = (int)(f - m->figure);
+}
+
+/* Returns the rounding of an objective. Values below it do not rank points. */
+static double rounding_of(const hf_merged *m, const char *objective)
+{
+    const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_FORM, objective);
+    double size = 0;
+    for (int i = 0; f && m->main != HF_MERGED_FORM && i < m->n; i++)
+        if (hf_merged_is_done(m, i)) size = fmax(size, fabs(f->value.value[i]));
+    return REACHED_RATIO * size;
+}
+
+/* Returns whether point i ranks before `best`, which is -1 for none. Differences of rounding do not count. */
+static bool is_better(const hf_merged *m, const leads *by, int i, int best)
+{
+    int by_verdict = best < 0 ? -1 : compare_verdicts(m, i, best);
+    if (by_verdict) return by_verdict < 0;
+    for (int k = 0; k < by->n; k++) {
+        double a = fmax(rank_value(m, by->figure[k], i), by->floor[k]),
+               b = fmax(rank_value(m, by->figure[k], best), by->floor[k]);
+        if (a != b && !(fabs(a - b) <= SAME_RATIO * fmax(fabs(a), fabs(b)) && isfinite(a - b))) return a < b;
+    }
+    return false;
+}
+
+/* Chooses the figures that rank points of equal verdicts. The smallest relative margin comes first, then the objective
+ * where it is not psi alone, as merit if there are several, then psi of the as-built nets where known, then psi of the
+ * result. The surface error decides where psi is the same everywhere. */
+static leads choose_leads(const hf_merged *m)
+{
+    static const char *const error[] = {"facet_half_path_rms_m", "half_path_rms_m", "facet_fit_half_path_rms_m",
+                                        "fit_half_path_rms_m"};
+    const char *objective = NULL;
+    bool has_other = false;
+    leads by = {.n = 0, .most = 1};
+    try_lead(m, HF_MERGED_REQUIREMENTS, HF_MERGED_MARGIN, &by);
+    if (by.n) by.floor[0] = -INFINITY;
+    by.most = by.n + 2;
+    for (int k = 0; k < m->n_figure; k++) {
+        if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "objective_", 10) != 0) continue;
+        objective = objective ? "merit" : m->figure[k].key;
+        has_other |= !m->figure[k].is_psi;
+    }
+    int n_before = by.n;
+    if (has_other) try_lead(m, m->main, objective, &by);
+    if (by.n > n_before) by.floor[n_before] = rounding_of(m, objective);
+    try_lead(m, HF_MERGED_BUILT, "psi_95_m", &by);
+    try_lead(m, m->main, "psi_m", &by);
+    for (size_t k = 0; k < sizeof error / sizeof *error; k++)
+        try_lead(m, m->main, error[k], &by);
+    return by;
+}
+
+/* Chooses the ranking figure and the best point. Where nothing is required, the best point needs a value of that
+ * figure. */
+static void choose_best(hf_merged *m)
+{
+    leads by = choose_leads(m);
+    bool is_judged = hf_merged_is_judged(m), varies = by.n > 0;
+    m->lead = by.n ? by.figure[0] : -1;
+    m->best = -1;
+    for (int i = 1; i < m->n && is_judged && !varies; i++)
+        varies = compare_verdicts(m, 0, i) != 0;
+    for (int i = 0; i < m->n && varies; i++)
+        if (hf_merged_is_done(m, i) && (is_judged || isfinite(m->figure[m->lead].value.value[i])) &&
+            is_better(m, &by, i, m->best))
+            m->best = i;
+    bool is_rounding = m->best >= 0 && m->lead >= 0 && !hf_merged_is_margin(m, m->lead) &&
+                       m->figure[m->lead].value.value[m->best] <= by.floor[0];
+    if (is_rounding && by.n > 1) m->lead = by.figure[1];
+}
+
+/* ---- the end of an axis ---- */
+
+/* Returns whether point i agrees with the best point in all axes but this one. */
+static bool is_on_curve(const hf_merged *m, int axis, int i)
+{
+    for (int a = 0; a < m->n_axis; a++)
+        if (a != axis && !agree(m, a, i, m->best)) return false;
+    return i != m->best;
+}
+
+/* Returns whether the ranking figure improves from point i to point j by more than rounding. */
+static bool improves(const hf_merged *m, int i, int j)
+{
+    const hf_merged_figure *f = &m->figure[m->lead];
+    double from = rank_value(m, m->lead, i), to = rank_value(m, m->lead, j), rounding = rounding_of(m, f->key);
+    if (!strcmp(hf_ledger_unit(f->key), "m")) rounding = fmax(rounding, RESOLVED_M);
+    return hf_merged_is_done(m, i) && from - to > fmax(rounding, SAME_RATIO * fmax(fabs(from), fabs(to)));
+}
+
+int hf_merged_improves_on(const hf_merged *m, int axis)
+{
+    const hf_series *s = &m->input[axis];
+    int near = -1, next = -1, side = 0; /* the two points nearest to the best one, both on the same side of it */
+    bool is_error = !strncmp(hf_texts_at(&m->input_name, axis), "tolerance.sigma_", 16);
+    if (m->best < 0 || m->lead < 0 || !s->n || s->columns != 1 || is_error) return 0;
+    double at = s->value[m->best];
+    for (int i = 0; i < m->n; i++) {
+        double away = s->value[i] - at;
+        if (away == 0 || !is_on_curve(m, axis, i)) continue;
+        if (side && (away > 0) != (side > 0)) return 0;
+        side = away > 0 ? 1 : -1;
+        if (near < 0 || fabs(away) < fabs(s->value[near] - at)) {
+            next = near;
+            near = i;
+        } else if (next < 0 || fabs(away) < fabs(s->value[next] - at)) {
+            next = i;
+        }
+    }
+    if (next < 0 || !improves(m, next, near) || !improves(m, near, m->best)) return 0;
+    return -side;
+}
+
+/* ---- intervals that pass ---- */
+
+typedef struct {
+    double value;
+    bool passes;
+} tried;
+
+static int by_value(const void *a, const void *b)
+{
+    double p = ((const tried *)a)->value, q = ((const tried *)b)->value;
+    return (p > q) - (p < q);
+}
+
+int hf_merged_passing(const hf_merged *m, int axis, hf_merged_interval *interval, int most)
+{
+    const hf_series *s = &m->input[axis];
+    int n = 0;
+    if (!s->n || s->columns != 1 || !hf_merged_is_judged(m)) return 0;
+    for (int a = 0; a < m->n_axis; a++)
+        if (a != axis && hf_merged_axis_varies(m, a)) return 0;
+    tried *point = malloc((size_t)m->n * sizeof *point);
+    for (int i = 0; i < m->n && point; i++)
+        point[i] = (tried){s->value[i], m->judgement[i].verdict == HF_VERDICT_PASS};
+    if (point) qsort(point, (size_t)m->n, sizeof *point, by_value);
+    bool passed = false;
+    for (int i = 0, next; point && i < m->n; i = next) {
+        bool passes = true;
+        for (next = i; next < m->n && !(point[next].value > point[i].value); next++)
+            passes &= point[next].passes;
+        if (passes && !passed && n == most) break;
+        if (passes && !passed) interval[n++].low = point[i].value;
+        if (passes) interval[n - 1].high = point[i].value;
+        passed = passes;
+    }
+    free(point);
+    return n;
+}
+
 const char *hf_merged_heading(const hf_merged *m)
 {
     return m->title.n ? hf_texts_at(&m->title, 0) : hf_path_name(m->path);
@@ -388,11 +550,16 @@ hf_status hf_merged_read(const char *path, hf_merged *m, hf_messages *messages)
     for (int k = 0; k < N_BUILT; k++)
         HF_TRY(read_figure(m, HF_MERGED_BUILT, "/points/tolerance", key_as_built[k], messages));
     HF_TRY(read_load_cases(m, messages));
+    HF_TRY(read_requirements(m, messages));
     for (int k = 0; k < m->n_figure; k++) {
         m->figure[k].is_same = is_same(m, &m->figure[k]);
         m->figure[k].is_psi = is_psi(m, &m->figure[k]);
     }
     HF_TRY(choose_main(m, messages));
+    m->judgement = calloc((size_t)m->n + 1, sizeof *m->judgement);
+    if (!m->judgement) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    for (int i = 0; i < m->n; i++)
+        m->judgement[i] = judge(m, i);
     choose_best(m);
     return HF_OK;
 }
@@ -403,6 +570,11 @@ void hf_merged_free(hf_merged *m)
     hf_texts_free(&m->reason);
     hf_texts_free(&m->title);
     hf_texts_free(&m->input_name);
+    hf_texts_free(&m->row_name);
+    hf_series_free(&m->row_verdict);
+    hf_series_free(&m->row_margin);
+    hf_series_free(&m->row_relative_margin);
+    free(m->judgement);
     hf_series_free(&m->status);
     for (int a = 0; a < HF_STUDY_AXIS_MAX; a++) {
         hf_series_free(&m->input[a]);

@@ -4,17 +4,20 @@
 
 #include "case/study.h"
 #include "store/store_series.h"
+#include <hifdm/requirements.h>
 
-/* The stages of a run, the as-built net (`tolerance`) and its load cases (`load_cases`). */
+/* The stages of a run, the as-built net (`tolerance`), its load cases (`load_cases`) and the requirements. */
 typedef enum {
     HF_MERGED_FORM = HF_STAGE_FORM,
     HF_MERGED_SEARCH = HF_STAGE_SEARCH,
     HF_MERGED_REFINE = HF_STAGE_REFINE,
     HF_MERGED_BUILT = HF_N_STAGE,
-    HF_MERGED_LOAD_CASES
+    HF_MERGED_LOAD_CASES,
+    HF_MERGED_REQUIREMENTS
 } hf_merged_stage;
 
-/* Returns the word of a stage in JSON: that of hf_stage_word, "tolerance" or "load_cases". */
+/* Returns the word of a stage in JSON: that of hf_stage_word, "tolerance", "load_cases" or
+ * "requirements". */
 const char *hf_merged_stage_word(hf_merged_stage stage);
 
 /* Whether a point meets the yield that its case requires. HF_MERGED_OPEN: the 95 % interval of its samples contains the
@@ -31,6 +34,15 @@ typedef struct {
     bool is_psi;  /* an objective that equals psi of this stage at all points */
 } hf_merged_figure;
 
+/* What a point has to meet: the rows of `requirements` with a verdict, and its required yield. Points rank by the
+ * number of requirements that fail, then by the number of undecided ones, then by the smallest relative margin. */
+typedef struct {
+    hf_verdict verdict;                    /* HF_VERDICT_NONE: nothing is required, or the point is not done */
+    int n_required, n_failed, n_undecided; /* numbers of requirements */
+    int tightest; /* row that decides: the first of those that fail, else of the undecided ones,
+                                            else of all, by relative margin; -1: none */
+} hf_merged_judgement;
+
 #define HF_MERGED_FIGURE_MAX 1536
 
 typedef struct {
@@ -44,9 +56,17 @@ typedef struct {
     int n_figure;
     hf_merged_figure figure[HF_MERGED_FIGURE_MAX]; /* in the order of the stages */
     hf_merged_stage main;                          /* the stage that is the result */
-    /* The figure that ranks the points, and the point with its minimum; -1 when no figure varies. */
+    int n_row;                                     /* number of rows of `requirements`; 0: the study has none */
+    hf_texts row_name;                             /* [n_row] names of the rows */
+    hf_series row_verdict, row_margin, row_relative_margin; /* [n][n_row] hf_verdict, margin, relative margin */
+    hf_merged_judgement *judgement;                         /* [n] owned */
+    /* The figure that ranks the points, after what they fail (hf_merged_is_judged), and the best point; -1 when nothing
+     * varies. The best point has the minimum of this figure or, of HF_MERGED_MARGIN, its maximum. */
     int lead, best;
 } hf_merged;
+
+/* Key of the smallest relative margin, a figure of HF_MERGED_REQUIREMENTS. */
+#define HF_MERGED_MARGIN "relative_margin_min"
 
 /* Returns whether the file has a table of points. Returns false for any other file and for one that cannot be read. */
 bool hf_merged_is(const char *path);
@@ -69,15 +89,32 @@ const hf_merged_figure *hf_merged_find(const hf_merged *merged, hf_merged_stage 
 bool hf_merged_is_beyond(const hf_merged *merged, const hf_merged_figure *loss, int point);
 
 /* Returns 1 or -1 when an axis should be extended above or below its range, otherwise 0. This is so when the best point
- * is at an end of the axis and the ranking figure still falls towards it. The figure must fall over the last two steps
- * by more than rounding, between points that agree in all other axes. Returns 0 for an axis of errors, too, because
+ * is at an end of the axis and the ranking figure still improves towards it. It must improve over the last two steps by
+ * more than rounding, between points that agree in all other axes. Returns 0 for an axis of errors, too, because
  * smaller errors are always better. */
-int hf_merged_falls_on(const hf_merged *merged, int axis);
+int hf_merged_improves_on(const hf_merged *merged, int axis);
 
 /* Returns whether a point meets its required yield. */
 hf_merged_answer hf_merged_meets_yield(const hf_merged *merged, int point);
 /* Returns the required yield, or NaN when points require none or different ones. */
 double hf_merged_required_yield(const hf_merged *merged);
+
+/* Returns whether any point has a verdict. The points then rank by their verdicts first. */
+bool hf_merged_is_judged(const hf_merged *merged);
+
+/* Returns whether a figure is the smallest relative margin, of which more is better. -1: no figure. */
+bool hf_merged_is_margin(const hf_merged *merged, int figure);
+
+/* Returns whether point i ranks before point j, without regard to rounding. */
+bool hf_merged_ranks_before(const hf_merged *merged, int i, int j);
+
+/* Lists the intervals of an axis of numbers within which all points pass, by the first and the last value of each, in
+ * ascending order. All other axes are fixed; otherwise, and on an axis of other values, there are none. Returns the
+ * number of intervals, at most `most`. */
+typedef struct {
+    double low, high;
+} hf_merged_interval;
+int hf_merged_passing(const hf_merged *merged, int axis, hf_merged_interval *interval, int most);
 
 /* Returns the title of the study or, without a title, the name of the merged file. */
 const char *hf_merged_heading(const hf_merged *merged);

@@ -1,4 +1,5 @@
-/* Prints a merged study as text or as JSON. Contents: columns, cells, the table, lines, the whole text, JSON. */
+/* Prints a merged study as text or as JSON. Contents: columns, cells, the table, verdicts, lines, the whole text,
+ * JSON. */
 #include "out/print_study.h"
 
 #include "base/json.h"
@@ -15,13 +16,15 @@
 #define POINTS_MOST 64 /* maximum number of points that are all shown */
 #define POINTS_BEST 32 /* points shown of a larger study, the best ones */
 #define REASON_MOST 60 /* characters of a reason */
-#define CELL_SIZE sizeof(hf_print_text)
+#define CELL_SIZE HF_PRINT_TIGHTEST_SIZE
+#define NAME_MOST 60 /* characters of the name of a requirement */
+#define INTERVALS_MOST 8
 #define WORD_MOST 24 /* characters of a word that is the value of an axis */
 #define SMALL_M 0.1  /* an axis of smaller lengths is shown in millimetres */
 
 /* ---- columns ---- */
 
-typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_YIELD } column_kind;
+typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_YIELD, OF_VERDICT, OF_TIGHTEST } column_kind;
 
 /* Describes a column of the table. Its head has two lines: the name and the unit. */
 typedef struct {
@@ -34,7 +37,7 @@ typedef struct {
 
 typedef struct {
     const hf_merged *m;
-    column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + 2];
+    column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + 4];
     int n_column, n_axis; /* n_axis: the first columns are axes */
     bool is_all;          /* true: all points are rows; false: those of `best` */
     int n_row, best[POINTS_BEST];
@@ -109,6 +112,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
 {
     static const char *const word[][2] = {{"psi_95_m", "psi of 95 %"},
                                           {"merit", "merit"},
+                                          {HF_MERGED_MARGIN, "smallest margin"},
                                           {"yield", "yield"},
                                           {"inner_tension_ratio", "ratio inside"},
                                           {"boundary_tension_ratio", "boundary ratio"},
@@ -119,7 +123,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
     bool of_facets = !strncmp(f->key, "facet_", 6);
     const char *rest = of_facets ? f->key + 6 : f->key, *fitted = strncmp(rest, "fit_", 4) ? "" : "fitted ";
     if (*fitted) rest += 4;
-    snprintf(name, HF_AXIS_NAME_SIZE, "%s", f->key);
+    snprintf(name, HF_AXIS_NAME_SIZE, "%.*s", HF_AXIS_NAME_SIZE - 1, f->key);
     if (!strcmp(f->key, "psi_m")) {
         snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM || *f->load_case ? "psi" : "psi %s",
                  hf_merged_stage_word(f->stage));
@@ -152,7 +156,7 @@ static column figure_column(const hf_merged *m, int k)
     column c = {.kind = OF_FIGURE, .index = k};
     const char *unit;
     c.scale = hf_print_scale(hf_ledger_unit(f->key), &unit);
-    if (!strcmp(f->key, "yield")) {
+    if (!strcmp(f->key, "yield") || f->stage == HF_MERGED_REQUIREMENTS) {
         unit = "%";
         c.scale = 100;
     }
@@ -190,6 +194,7 @@ static bool is_shown_of_load_case(const hf_merged *m, const hf_merged_figure *f)
 static bool is_shown(const hf_merged *m, const hf_merged_figure *f)
 {
     if (f->is_psi || !strcmp(f->key, "residual_N") || is_behind_optics(m, f)) return false;
+    if (f->stage == HF_MERGED_REQUIREMENTS) return false; /* beside the verdict */
     if (f->stage == HF_MERGED_LOAD_CASES) return is_shown_of_load_case(m, f);
     if (f->stage == HF_MERGED_BUILT) return !strcmp(f->key, "psi_95_m") || !strcmp(f->key, "yield");
     return f->stage == m->main || !strcmp(f->key, "psi_m");
@@ -248,17 +253,63 @@ static void print_figure(const hf_merged *m, const column *c, int i, char text[C
     else if (isnan(value))
         snprintf(text, CELL_SIZE, is_loss && hf_merged_is_beyond(m, f, i) ? "above %g" : "-", HF_RUZE_MOST_DB);
     else if (isinf(value))
-        strcpy(text, "inf");
+        strcpy(text, value > 0 ? "inf" : "-inf");
     else if (!strcmp(c->unit, "mm") || strstr(f->key, "tension_ratio"))
         strcpy(text, hf_print_decimals(value).text);
     else if (!strcmp(c->unit, "%"))
-        snprintf(text, CELL_SIZE, "%.1f", value);
+        snprintf(text, CELL_SIZE, f->stage == HF_MERGED_REQUIREMENTS ? "%+.1f" : "%.1f", value);
     else
         snprintf(text, CELL_SIZE, !strncmp(f->key, "n_", 2) ? "%g" : "%#.4g", value);
 }
 
+const char *hf_print_study_verdict(const hf_merged *m, int i, char text[HF_AXIS_NAME_SIZE])
+{
+    const hf_merged_judgement *j = &m->judgement[i];
+    int n = j->verdict == HF_VERDICT_FAIL ? j->n_failed : j->n_undecided;
+    if (j->verdict == HF_VERDICT_NONE)
+        strcpy(text, "-");
+    else if (j->verdict == HF_VERDICT_PASS)
+        strcpy(text, hf_verdict_word[j->verdict]);
+    else
+        snprintf(text, HF_AXIS_NAME_SIZE, "%s (%d of %d)", hf_verdict_word[j->verdict], n, j->n_required);
+    return text;
+}
+
+/* Formats the margin of a requirement at point i: "-12.3 %" or, without a relative margin, "+0.5 N". */
+static void print_margin(const hf_merged *m, int row, int i, char text[CELL_SIZE])
+{
+    size_t at = (size_t)i * (size_t)m->n_row + (size_t)row;
+    double relative = m->row_relative_margin.value[at];
+    const char *name = hf_texts_at(&m->row_name, row), *unit = "";
+    for (int k = 0; k < HF_REQUIRED_N_FIGURE; k++)
+        if (!strncmp(name, hf_required_figure_word[k], strcspn(name, " ,"))) unit = hf_required_figure_unit[k];
+    double scale = hf_print_scale(unit, &unit);
+    if (isfinite(relative))
+        snprintf(text, CELL_SIZE, "%+.1f %%", 100 * relative);
+    else
+        snprintf(text, CELL_SIZE, "%+.4g%s%s", scale * m->row_margin.value[at], *unit ? " " : "", unit);
+}
+
+const char *hf_print_study_tightest(const hf_merged *m, int i, char text[HF_PRINT_TIGHTEST_SIZE])
+{
+    int row = m->judgement[i].tightest;
+    char shown[8 * HF_LEDGER_REQUIREMENT_SIZE], margin[CELL_SIZE];
+    strcpy(text, "-");
+    if (row < 0) return text;
+    hf_text_escape(hf_texts_at(&m->row_name, row), shown, sizeof shown);
+    bool is_long = strlen(shown) > NAME_MOST;
+    if (is_long) shown[NAME_MOST - 3] = '\0';
+    hf_text_trim_utf8(shown);
+    print_margin(m, row, i, margin);
+    snprintf(text, HF_PRINT_TIGHTEST_SIZE, "%.*s%s %.30s", NAME_MOST, shown, is_long ? "..." : "", margin);
+    return text;
+}
+
 static void print_cell(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
 {
+    if (c->kind == OF_VERDICT) hf_print_study_verdict(m, i, text);
+    if (c->kind == OF_TIGHTEST) hf_print_study_tightest(m, i, text);
+    if (c->kind == OF_VERDICT || c->kind == OF_TIGHTEST) return;
     if (c->kind == OF_AXIS)
         print_axis_value(m, c, i, text);
     else if (c->kind == OF_FIGURE)
@@ -311,6 +362,10 @@ static void add_columns(table *t)
         all_done &= hf_merged_is_done(m, i);
     if (!all_done) add_column(t, (column){.kind = OF_STATUS, .head = "status"});
     int count[HF_MERGED_N_ANSWER], n_asked = count_answers(m, count);
+    const hf_merged_figure *margin = hf_merged_find(m, HF_MERGED_REQUIREMENTS, HF_MERGED_MARGIN);
+    if (m->n_row > 0) add_column(t, (column){.kind = OF_VERDICT, .head = "verdict"});
+    if (m->n_row > 0 && margin) add_column(t, figure_column(m, (int)(margin - m->figure)));
+    if (m->n_row > 0) add_column(t, (column){.kind = OF_TIGHTEST, .head = "tightest requirement and its margin"});
     if (n_asked > 0) add_column(t, (column){.kind = OF_YIELD, .head = "meets", .unit = "yield"});
     for (int rank = 0; rank < N_RANK; rank++)
         for (int k = 0; k < m->n_figure; k++)
@@ -352,6 +407,54 @@ static void print_blocks(const table *t, hf_print_style style, FILE *f)
         from = to;
         if (from < t->n_column) fputc('\n', f);
     } while (from < t->n_column);
+}
+
+/* ---- verdicts ---- */
+
+const char *hf_print_study_ranking(const hf_merged *m, char text[HF_PRINT_RANKING_SIZE])
+{
+    char lead[HF_AXIS_NAME_SIZE] = "";
+    bool is_margin = hf_merged_is_margin(m, m->lead);
+    if (m->lead >= 0) name_figure(m, &m->figure[m->lead], lead);
+    snprintf(text, HF_PRINT_RANKING_SIZE, "%s%s%s",
+             !hf_merged_is_judged(m) ? "" : "failed requirements, then undecided ones",
+             hf_merged_is_judged(m) && *lead ? ", then " : "", is_margin ? "smallest relative margin" : lead);
+    return text;
+}
+
+/* Appends the interval of an axis between two points that pass: " between the points 25 and 40 N". */
+static size_t add_interval(const column *c, const hf_merged_interval *in, bool is_first, char *text, size_t size)
+{
+    const char *blank = *c->unit ? " " : "", *before = is_first ? "" : ", and";
+    int n = in->low < in->high
+                ? snprintf(text, size, "%s between the points %.6g and %.6g%s%s", before, c->scale * in->low,
+                           c->scale * in->high, blank, c->unit)
+                : snprintf(text, size, "%s at the point %.6g%s%s", before, c->scale * in->low, blank, c->unit);
+    return (size_t)n < size ? (size_t)n : size - 1;
+}
+
+const char *hf_print_study_advice(const hf_merged *m, char text[HF_PRINT_ADVICE_SIZE])
+{
+    int count[HF_VERDICT_N] = {0};
+    hf_merged_interval interval[INTERVALS_MOST];
+    *text = '\0';
+    if (!hf_merged_is_judged(m)) return text;
+    for (int i = 0; i < m->n; i++)
+        count[m->judgement[i].verdict]++;
+    int n_pass = count[HF_VERDICT_PASS];
+    size_t used = (size_t)snprintf(text, HF_PRINT_ADVICE_SIZE, n_pass ? "%d of %d points pass%s" : "no point passes",
+                                   n_pass, m->n, n_pass == 1 ? "es" : "");
+    for (int a = 0; a < m->n_axis; a++) {
+        int n = hf_merged_axis_varies(m, a) ? hf_merged_passing(m, a, interval, INTERVALS_MOST) : 0;
+        column c = axis_column(m, a);
+        if (n > 0) used += (size_t)snprintf(text + used, HF_PRINT_ADVICE_SIZE - used, ": %s", c.head);
+        for (int k = 0; k < n; k++)
+            used += add_interval(&c, &interval[k], k == 0, text + used, HF_PRINT_ADVICE_SIZE - used);
+    }
+    if (count[HF_VERDICT_UNDECIDED])
+        snprintf(text + used, HF_PRINT_ADVICE_SIZE - used, "; %d %s undecided", count[HF_VERDICT_UNDECIDED],
+                 count[HF_VERDICT_UNDECIDED] == 1 ? "is" : "are");
+    return text;
 }
 
 /* ---- lines ---- */
@@ -414,28 +517,57 @@ static void print_same(const hf_merged *m, FILE *f)
     end_items(&t);
 }
 
+/* Says whether the best point passes. If it does not, then no point passes. */
+static void add_verdict(const hf_merged *m, items *line)
+{
+    const hf_merged_judgement *j = &m->judgement[m->best];
+    char text[2 * HF_AXIS_NAME_SIZE];
+    if (j->verdict == HF_VERDICT_PASS)
+        snprintf(text, sizeof text, "passes");
+    else if (j->verdict == HF_VERDICT_FAIL)
+        snprintf(text, sizeof text, "no point passes; the best fails %d of %d", j->n_failed, j->n_required);
+    else
+        snprintf(text, sizeof text, "no point passes; of the best %d of %d %s undecided", j->n_undecided, j->n_required,
+                 j->n_undecided == 1 ? "is" : "are");
+    add_item(line, text);
+}
+
 /* Prints the best point, and axes that should be extended beyond it. */
 static void print_best(const table *t, FILE *f)
 {
     const hf_merged *m = t->m;
     items line = {.file = f, .title = "best (*)"};
+    bool is_judged = hf_merged_is_judged(m);
     if (m->best < 0) return;
-    column lead = figure_column(m, m->lead);
-    char text[2 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE];
-    print_cell(m, &lead, m->best, cell);
-    snprintf(text, sizeof text, "minimum %s: %s%s%s", lead.head, cell, *lead.unit ? " " : "", lead.unit);
-    add_item(&line, text);
+    char text[3 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE], words[HF_PRINT_RANKING_SIZE];
+    if (is_judged) add_verdict(m, &line);
+    column lead = {.scale = 1};
+    if (m->lead >= 0) {
+        lead = figure_column(m, m->lead);
+        print_cell(m, &lead, m->best, cell);
+        snprintf(text, sizeof text, "%s%s%s%s%s%s", is_judged ? "" : "minimum ", lead.head, is_judged ? " " : ": ",
+                 cell, *lead.unit ? " " : "", lead.unit);
+        add_item(&line, text);
+    }
     for (int k = 0; k < t->n_axis; k++)
         print_item(m, &t->column[k], m->best, &line);
     end_items(&line);
     for (int k = 0; k < t->n_axis; k++) {
         const column *c = &t->column[k];
-        int side = hf_merged_falls_on(m, c->index);
+        int side = hf_merged_improves_on(m, c->index);
         if (side == 0) continue;
         print_cell(m, c, m->best, cell);
-        hf_print_line(f, "  %-13s %s still falls at %s %s%s%s, the end of its axis: add points %s it", "", lead.head,
-                      c->head, cell, *c->unit ? " " : "", c->unit, side > 0 ? "above" : "below");
+        hf_print_line(f, "  %-13s %s still %s at %s %s%s%s, the end of its axis: add points %s it", "", lead.head,
+                      hf_merged_is_margin(m, m->lead) ? "rises" : "falls", c->head, cell, *c->unit ? " " : "", c->unit,
+                      side > 0 ? "above" : "below");
     }
+    hf_print_line(f, "  %-13s %s", "ranked by", hf_print_study_ranking(m, words));
+}
+
+static void print_advice(const hf_merged *m, FILE *f)
+{
+    char text[HF_PRINT_ADVICE_SIZE];
+    if (*hf_print_study_advice(m, text)) hf_print_line(f, "  %-13s %s", "advice", text);
 }
 
 static void print_yield(const hf_merged *m, FILE *f)
@@ -490,24 +622,21 @@ static void print_head(const hf_merged *m, FILE *f)
 
 /* ---- the whole text ---- */
 
-/* Selects the rows: all points or, in a large study, those with the smallest values of the ranking figure. */
+/* Selects the rows: all points or, in a large study, those that rank first. */
 static void choose_rows(table *t, bool all)
 {
     const hf_merged *m = t->m;
-    const double *value = m->lead < 0 ? NULL : m->figure[m->lead].value.value;
-    double last_value = -INFINITY;
     t->n_row = m->n;
-    t->is_all = all || m->n <= POINTS_MOST || !value;
+    t->is_all = all || m->n <= POINTS_MOST || m->best < 0;
     for (int k = 0, last = -1; k < POINTS_BEST && !t->is_all; k++) {
         int next = -1;
-        for (int i = 0; i < m->n; i++) {
-            bool is_later = value[i] > last_value || (value[i] == last_value && i > last);
-            if (hf_merged_is_done(m, i) && is_later && (next < 0 || value[i] < value[next])) next = i;
-        }
+        for (int i = 0; i < m->n; i++)
+            if (hf_merged_is_done(m, i) && (last < 0 || hf_merged_ranks_before(m, last, i)) &&
+                (next < 0 || hf_merged_ranks_before(m, i, next)))
+                next = i;
         t->n_row = next < 0 ? k : k + 1;
         if (next < 0) break;
         t->best[k] = last = next;
-        last_value = value[next];
     }
 }
 
@@ -521,6 +650,7 @@ void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
     hf_print_line(f, "%s", hf_merged_heading(m));
     if (style.has_colour) fputs(HF_PRINT_PLAIN, f);
     print_head(m, f);
+    print_advice(m, f);
     print_best(&t, f);
     print_yield(m, f);
     print_same(m, f);
@@ -551,17 +681,54 @@ static void write_input(const hf_merged *m, int i, hf_json *j)
     hf_json_close(j, '}');
 }
 
+/* Writes the verdict on each requirement. */
+static void write_rows(const hf_merged *m, int i, hf_json *j)
+{
+    hf_json_open(j, "rows", '[');
+    for (int row = 0; row < m->n_row && hf_merged_is_done(m, i); row++) {
+        size_t at = (size_t)i * (size_t)m->n_row + (size_t)row;
+        double verdict = m->row_verdict.value[at];
+        bool is_known = verdict >= 0 && verdict < HF_VERDICT_N;
+        hf_json_open(j, NULL, '{');
+        hf_json_text(j, "name", hf_texts_at(&m->row_name, row));
+        hf_json_text(j, "verdict", hf_verdict_word[is_known ? (int)verdict : HF_VERDICT_NONE]);
+        hf_json_number(j, "margin", m->row_margin.value[at]);
+        hf_json_number(j, "relative_margin", m->row_relative_margin.value[at]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
 static void write_stages(const hf_merged *m, int i, hf_json *j)
 {
     for (int k = 0; k < m->n_figure; k++) {
         const hf_merged_figure *f = &m->figure[k];
         bool is_last = k + 1 == m->n_figure;
         if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word(f->stage), '{');
+        if (f->stage == HF_MERGED_REQUIREMENTS && f[-1].stage != f->stage) write_rows(m, i, j);
         if (*f->load_case && (k == 0 || strcmp(f[-1].load_case, f->load_case) != 0)) hf_json_open(j, f->load_case, '{');
         hf_json_number(j, f->key, hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN);
         if (*f->load_case && (is_last || strcmp(f[1].load_case, f->load_case) != 0)) hf_json_close(j, '}');
         if (is_last || f[1].stage != f->stage) hf_json_close(j, '}');
     }
+}
+
+/* Writes the best point. A point that does not pass is only the closest one. */
+static void write_best(const hf_merged *m, hf_json *j)
+{
+    bool is_judged = hf_merged_is_judged(m);
+    char text[HF_PRINT_ADVICE_SIZE];
+    int n_pass = 0;
+    if (m->best >= 0) {
+        bool is_best = !is_judged || m->judgement[m->best].verdict == HF_VERDICT_PASS;
+        hf_json_text(j, is_best ? "best" : "closest", hf_texts_at(&m->id, m->best));
+        if (m->lead >= 0) hf_json_text(j, "best_by", m->figure[m->lead].key);
+    }
+    if (!is_judged) return;
+    for (int i = 0; i < m->n; i++)
+        n_pass += m->judgement[i].verdict == HF_VERDICT_PASS;
+    hf_json_integer(j, "passing", n_pass);
+    hf_json_text(j, "advice", hf_print_study_advice(m, text));
 }
 
 void hf_print_study_json(const hf_merged *m, FILE *file)
@@ -570,16 +737,16 @@ void hf_print_study_json(const hf_merged *m, FILE *file)
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "title", hf_merged_heading(m));
     hf_json_text(j, "result", hf_merged_stage_word(m->main));
-    if (m->best >= 0) {
-        hf_json_text(j, "best", hf_texts_at(&m->id, m->best));
-        hf_json_text(j, "best_by", m->figure[m->lead].key);
-    }
+    write_best(m, j);
     hf_json_open_rows(j, "points");
     for (int i = 0; i < m->n; i++) {
         hf_json_open_row(j);
         hf_json_text(j, "id", hf_texts_at(&m->id, i));
         hf_json_text(j, "status", hf_status_word((hf_status)m->status.value[i]));
         if (*hf_texts_at(&m->reason, i)) hf_json_text(j, "reason", hf_texts_at(&m->reason, i));
+        if (hf_merged_is_judged(m)) hf_json_text(j, "verdict", hf_verdict_word[m->judgement[i].verdict]);
+        if (m->judgement[i].tightest >= 0)
+            hf_json_text(j, "tightest", hf_texts_at(&m->row_name, m->judgement[i].tightest));
         write_input(m, i, j);
         write_stages(m, i, j);
         hf_json_close(j, '}');

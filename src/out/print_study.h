@@ -15,3 +15,23 @@ void hf_print_study_json(const hf_merged *merged, FILE *file);
 #define HF_AXIS_NAME_SIZE 64
 /* Formats the name of an objective: "tension edge" for objective_1_tension_edge. Returns words. */
 const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SIZE]);
+
+/* The texts below are the same on the page of a study. All functions return text. */
+
+#define HF_PRINT_ADVICE_SIZE 1024
+/* Formats which points pass: "3 of 6 points pass: pretension between the points 25 and 40 N". The text is empty if
+ * nothing is required. It states intervals for a study of one axis of numbers, and only between points that were
+ * tried. */
+const char *hf_print_study_advice(const hf_merged *merged, char text[HF_PRINT_ADVICE_SIZE]);
+
+#define HF_PRINT_RANKING_SIZE 128
+/* Formats what ranks the points: "psi", or "failed requirements, then undecided ones, then smallest relative
+ * margin". */
+const char *hf_print_study_ranking(const hf_merged *merged, char text[HF_PRINT_RANKING_SIZE]);
+
+/* Formats the verdict on a point: "pass", "fail (2 of 9)", "undecided (1 of 9)", or "-" without one. */
+const char *hf_print_study_verdict(const hf_merged *merged, int point, char text[HF_AXIS_NAME_SIZE]);
+
+#define HF_PRINT_TIGHTEST_SIZE 96
+/* Formats the requirement that decides and its margin: "tension of tie, all load cases -12.3 %", or "-". */
+const char *hf_print_study_tightest(const hf_merged *merged, int point, char text[HF_PRINT_TIGHTEST_SIZE]);

@@ -77,7 +77,7 @@ static void write_inputs(const hf_merged *m, FILE *f)
         } else {
             write_texts("texts", &m->input_text[a], f);
         }
-        int side = hf_merged_falls_on(m, a);
+        int side = hf_merged_improves_on(m, a);
         if (side) fprintf(f, ",\"extend\":\"%s\"", side > 0 ? "above" : "below");
         fputc('}', f);
         comma = ",";
@@ -95,7 +95,7 @@ static const char *stage_word(const hf_merged_figure *figure, char word[WORD_SIZ
     return word;
 }
 
-/* Writes the figures of each stage that has psi, of the as-built net, and of its load cases. */
+/* Writes the figures of each stage that has psi, of the as-built net, of its load cases and of the requirements. */
 static void write_outputs(const hf_merged *m, FILE *f)
 {
     const char *comma = "";
@@ -103,7 +103,8 @@ static void write_outputs(const hf_merged *m, FILE *f)
     fputs(",\n\"output\":[", f);
     for (int k = 0, next; k < m->n_figure; k = next) {
         const hf_merged_figure *first = &m->figure[k];
-        bool has_psi = hf_merged_find(m, first->stage, first->stage == HF_MERGED_BUILT ? "psi_95_m" : "psi_m");
+        bool has_psi = first->stage == HF_MERGED_REQUIREMENTS ||
+                       hf_merged_find(m, first->stage, first->stage == HF_MERGED_BUILT ? "psi_95_m" : "psi_m");
         if (has_psi) {
             fprintf(f, "%s\n{", comma);
             hf_json_text(&(hf_json){.file = f}, "stage", stage_word(first, word));
@@ -150,6 +151,27 @@ static void write_figures(const hf_merged *m, FILE *f)
     hf_json_integer(&j, "best", m->best);
 }
 
+/* Writes the verdict on each point, and what the study recommends. */
+static void write_verdicts(const hf_merged *m, FILE *f)
+{
+    hf_json j = {.file = f, .is_due = true};
+    char text[HF_PRINT_ADVICE_SIZE];
+    hf_json_text(&j, "ranked_by", hf_print_study_ranking(m, text));
+    hf_json_text(&j, "advice", hf_print_study_advice(m, text));
+    hf_json_open(&j, "verdict", '[');
+    for (int i = 0; i < m->n; i++)
+        hf_json_text(&j, NULL, hf_verdict_word[m->judgement[i].verdict]);
+    hf_json_close(&j, ']');
+    hf_json_open(&j, "verdict_text", '[');
+    for (int i = 0; i < m->n; i++)
+        hf_json_text(&j, NULL, hf_print_study_verdict(m, i, text));
+    hf_json_close(&j, ']');
+    hf_json_open(&j, "tightest", '[');
+    for (int i = 0; i < m->n && m->n_row > 0; i++)
+        hf_json_text(&j, NULL, hf_print_study_tightest(m, i, text));
+    hf_json_close(&j, ']');
+}
+
 static void write_data(const void *context, FILE *f)
 {
     const study_page *p = context;
@@ -166,6 +188,7 @@ static void write_data(const void *context, FILE *f)
     write_inputs(m, f);
     write_outputs(m, f);
     write_figures(m, f);
+    write_verdicts(m, f);
     fputs("}}\n", f);
 }
 

@@ -150,6 +150,63 @@ START_TEST(points_say_whether_they_have_the_yield)
 }
 END_TEST
 
+/* Verdicts and margins of each point are those of its run, and the points rank by them, not by psi. The share of the
+ * first row is an axis, so its name leaves the share out. */
+START_TEST(points_rank_by_their_requirements)
+{
+    const char *path = file_with(
+        "s.yaml", NET "tolerance: {sigma_cut_m: 5e-5, samples: 60}\nrequirements: [{figure: tension, set: tie, "
+                      "at_least: 2, share: 0.9}, {figure: psi, at_most: 3.7e-4, share: 0.5}, {figure: slack_cables, "
+                      "at_most: 0}]\nsweep: {form.pretension_N: [4, 8, 10, 12, 14, 18], requirements.0.share: [0.5, "
+                      "0.9], files: all}\n");
+    const char *merged = temp("s.h5"), *page = temp("s.html");
+    sweep_and_merge(path, temp("s.d"), merged);
+    HIFDM(0, "show", merged, "--json");
+    const char *json = out_as("s.json");
+    HIFDM(0, "show", merged);
+    const char *shown = out_as("s.txt");
+    OUT("\n  ranked by     failed requirements, then undecided ones, then smallest relative margin\n");
+    HIFDM(0, "report", merged, "-o", page);
+#define OF "a['points/requirements']"
+#define RUN_OF "a['runs'][k]['requirements']"
+    EXPECT(merged, json, shown, data_of(page, "p.json"), "--",
+           "texts(" OF "['name']) == ['tension of tie', 'psi, 50 % of samples', 'slack_cables']",
+           "all(np.array_equal(" OF "[n][i], " RUN_OF "[n][:], equal_nan=True) for i, k in "
+           "enumerate(texts(a['points/id'])) for n in ('margin', 'relative_margin'))",
+           "all([('pass', 'fail', 'undecided', 'none')[v] for v in " OF "['verdict'][i]] == texts(" RUN_OF
+           "['verdict']) for i, k in enumerate(texts(a['points/id'])))",
+           "np.array_equal(" OF "['n_failed'][:], (" OF "['verdict'][:] == 1).sum(1))",
+           "np.array_equal(" OF "['n_undecided'][:], (" OF "['verdict'][:] == 2).sum(1))",
+           "np.array_equal(" OF "['relative_margin_min'][:], np.nanmin(" OF "['relative_margin'][:], 1))",
+           "set(p['verdict'] for p in b['points']) == {'pass', 'fail', 'undecided'} == set(d['study']['verdict'])",
+           "b['best'] == texts(a['points/id'])[np.lexsort((-" OF "['relative_margin_min'][:], " OF
+           "['n_undecided'][:], " OF "['n_failed'][:]))[0]]",
+           "b['best'] != texts(a['points/id'])[int(np.argmin(a['points/form/psi_m'][:]))] and 'closest' not in b",
+           "b['passing'] == int(((" OF "['n_failed'][:] == 0) & (" OF "['n_undecided'][:] == 0)).sum()) > 0",
+           "b['advice'].startswith('%d of 12 points pass; ' % b['passing']) and b['advice'] == d['study']['advice']",
+           "b['best_by'] == 'relative_margin_min' and d['study']['best'] == texts(a['points/id']).index(b['best'])",
+           "max(len(line) for line in c.decode().splitlines() if 'hifdm report' not in line) <= 100");
+}
+END_TEST
+
+/* The point with the smallest psi of 95 % has too little tension, so it is not the best while another point passes. */
+START_TEST(a_point_without_the_yield_is_not_the_best)
+{
+    const char *path = file_with(
+        "s.yaml", NET "tolerance: {sigma_cut_m: 5e-5, samples: 60, required_yield: 0.9, require: "
+                      "[{measure: tension_min_N, at_least: 1.5}]}\nsweep:\n  form.pretension_N: [8, 24, 30]\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    HIFDM(0, "show", temp("s.h5"), "--json");
+    EXPECT(temp("s.h5"), out_as("s.json"), "--", "np.argmin(a['points/tolerance/psi_95_m'][:]) == 0",
+           "[p['verdict'] for p in b['points']] == ['fail', 'pass', 'pass']",
+           "b['best'] == texts(a['points/id'])[1] and b['best_by'] == 'psi_95_m'",
+           "b['advice'] == '2 of 3 points pass: pretension between the points 24 and 30 N'");
+    HIFDM(0, "show", temp("s.h5"));
+    OUT("best (*)      passes, psi of 95 % ");
+    OUT("ranked by     failed requirements, then undecided ones, then psi of 95 %");
+}
+END_TEST
+
 /* Objectives that no point reaches: their merit decides which is best, however small psi's part in it is. */
 START_TEST(objectives_say_which_point_is_best)
 {
@@ -253,6 +310,7 @@ START_TEST(a_large_study_shows_its_best)
     HIFDM(0, "show", temp("s.h5"));
     OUT("the 32 best of 70 points; --verbose: all");
     OUT("best (*)      minimum psi: ");
+    OUT("\n  ranked by     psi\n");
     EXPECT(temp("s.h5"), out_as("s.txt"), "--",
            "[r[1:].split()[1] for r in b.decode().splitlines() if r[1:].split() and r[1:].split()[0][0].isdigit()] == "
            "['%.4f' % (1e3 * v) for v in sorted(a['points/form/psi_m'][:])[:32]]");
@@ -395,6 +453,8 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, load_cases_are_columns_of_a_merge);
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, points_say_whether_they_have_the_yield);
+    tcase_add_test(tcase, points_rank_by_their_requirements);
+    tcase_add_test(tcase, a_point_without_the_yield_is_not_the_best);
     tcase_add_test(tcase, objectives_say_which_point_is_best);
     tcase_add_test(tcase, a_best_point_at_the_end_of_an_axis_is_told);
     tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
