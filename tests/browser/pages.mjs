@@ -12,6 +12,7 @@
 //   fails: a run of it ends without a feasible design
 //   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
 //   look: its looks are checked, and its sizes are in sizes.json
+//   judged: how the margin over the axes is drawn, as a map or as a line
 //   study: how many points; leads: the axis that matters most, of two; along the other one nothing changes
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
@@ -52,6 +53,13 @@ k2,m,b,boundary,length,
 k3,a,n,boundary,length,1.2
 k4,c,n,boundary,length,0.6
 `;
+
+const REQUIRED =
+  "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, " +
+  "rear_distance_m: 1.8}\nform: {prestress: exact}\ntruss: {ring: {cells_per_bay: 2, held: bay, longeron: " +
+  "{diameter_m: 0.03, wall_m: 0.001}}}\ntolerance: {sigma_cut_m: 5e-5, samples: 60}\nrequirements: [{figure: " +
+  "tension, set: tie, at_least: 2, share: 0.9}, {figure: psi, at_most: 3.7e-4, share: 0.5}, {figure: slack_cables, " +
+  "at_most: 0}]\n";
 
 export const pages = [
   { name: "chen2022", source: "configs/chen2022.yaml", sections: GA, warnings: 0, look: true },
@@ -263,6 +271,25 @@ export const pages = [
         "tie, target: 8, weight: 1e-4}]}\ntolerance: {sigma_cut_m: 5e-5, samples: 40, required_yield: 0.9, require: " +
         "[{measure: psi_m, at_most: 3e-4}]}\n",
     },
+    sections: ["sweep", "points"],
+  },
+  {
+    name: "sweep-requirements", // two axes: a map of the smallest margin
+    look: true,
+    study: 12,
+    judged: "map",
+    text:
+      "base: base.yaml\nsweep:\n  form.pretension_N: [4, 8, 10, 12, 14, 18]\n  tolerance.sigma_cut_m: [2e-5, 5e-5]\n" +
+      "  files: all\n",
+    files: { "base.yaml": REQUIRED },
+    sections: ["sweep", "points"],
+  },
+  {
+    name: "sweep-margin", // one axis, and no point that passes
+    study: 3,
+    judged: "line",
+    text: "base: base.yaml\nsweep:\n  form.pretension_N: [4, 18, 22]\n  files: all\n",
+    files: { "base.yaml": REQUIRED },
     sections: ["sweep", "points"],
   },
 ];

@@ -72,7 +72,8 @@ export async function checkSurfaceOfStudy(tab, study) {
   assert.match(await tab.locator("dl.figures").first().innerText(), /points with a yield of 90\u00a0?\s?%/i);
   const rms = study.output.find(({ stage }) => stage === "refine").facet_half_path_rms_m[study.best];
   same(number(await best.locator('[data-label="RMS of facets (mm)"]').textContent()), 1e3 * rms, 5);
-  assert.match(await tab.locator("#sweep .chart .legend").first().innerText(), /best point/);
+  const word = study.meets_yield[study.best] === "yes" ? "best point" : "closest point"; // best only if it passes
+  assert.ok((await tab.locator("#sweep .chart .legend").first().innerText()).includes(word));
 }
 
 // Along the axis of few values the many of the other one are a map: each cell has the value of its point.
@@ -93,4 +94,76 @@ async function checkHeat(tab, study) {
     same(number(title.match(/: (\S+) mm$/)[1]), 1e3 * study.output.at(-1).psi_m[i], 5);
   }
   await tab.locator(`#sweep input[name=axis][value="${many.name}"]`).check();
+}
+
+// Verdicts are those of the results: in the table, and in the picture of the smallest margin. The best point passes, or
+// none does, and the page says so.
+export async function checkVerdicts(tab, page, made) {
+  const { study } = made,
+    rows = tab.locator("#points tbody tr"),
+    seen = new Map(); // by id: verdict and smallest relative margin
+  for (let r = 0; r < page.study; r++) {
+    const row = rows.nth(r),
+      link = row.locator("a"),
+      summary = JSON.parse(made.hifdm("show", decodeURIComponent(await link.getAttribute("href")), "--json"));
+    const least = Math.min(...summary.requirements.map((q) => q.relative_margin).filter((v) => v !== null)),
+      n = summary.requirements.filter((q) => q.verdict === summary.verdict).length,
+      words = summary.verdict === "pass" ? "pass" : `${summary.verdict} (${n} of ${summary.requirements.length})`;
+    assert.equal(await row.locator('[data-label="Verdict"]').textContent(), words);
+    const margin = number(await row.locator('[data-label^="Smallest margin"]').textContent());
+    assert.ok(Math.abs(margin - 100 * least) < 0.051);
+    seen.set(await link.textContent(), [summary.verdict, 100 * least]);
+  }
+  const at = (i) => seen.get(study.id[i]),
+    passing = study.id.filter((_, i) => at(i)[0] === "pass").length,
+    advice = await tab.locator("p.advice").innerText(),
+    figures = await tab.locator("dl.figures").first().innerText();
+  assert.ok(figures.includes(`${passing} of ${page.study}`) && /points pass/.test(figures), figures);
+  assert.equal(await tab.locator("#points tr.chosen a").textContent(), study.id[study.best]);
+  if (passing) {
+    const margins = [...seen.values()].filter(([verdict]) => verdict === "pass").map(([, margin]) => margin);
+    assert.equal(at(study.best)[0], "pass");
+    assert.equal(at(study.best)[1], Math.max(...margins));
+    assert.match(advice, new RegExp(`^${passing} of ${page.study} points pass`));
+  } else {
+    assert.match(advice, /^No point passes.*The verdict on the closest point is: fail \(1 of 3\)\./);
+    assert.match(figures, /closest point, smallest relative margin/);
+    assert.ok(!/best/.test(figures), figures);
+  }
+  if (page.judged === "map") await checkMarginMap(tab, study, at);
+  else await checkMarginLine(tab, study, at);
+}
+
+async function checkMarginMap(tab, study, at) {
+  const map = tab.locator("#sweep .heat").first(),
+    sorted = ({ values }) => [...new Set(values)].sort((a, b) => a - b),
+    across = study.input.find(({ name }) => map && name === "form.pretension_N"),
+    down = study.input.find((input) => input !== across),
+    signs = { pass: ["✓", "passes"], fail: ["✗", "fails"], undecided: ["?", "undecided"] };
+  await tab.locator(`#sweep input[name=axis][value="${across.name}"]`).check();
+  assert.equal(await map.locator("h3").textContent(), "Smallest relative margin of the requirements");
+  assert.equal(await map.locator("td.best").count(), 1);
+  for (const [r, y] of sorted(down).reverse().entries())
+    for (const [c, x] of sorted(across).entries()) {
+      const cell = map.locator("tbody tr").nth(r).locator("td").nth(c),
+        [verdict, margin] = at(study.id.findIndex((_, i) => across.values[i] === x && down.values[i] === y)),
+        [, value, word] = (await cell.getAttribute("title")).match(/: (\S+) %, (\w+)$/);
+      same(number(value), margin, 5);
+      assert.equal(word, signs[verdict][1]);
+      assert.equal((await cell.textContent())[0], signs[verdict][0]);
+    }
+}
+
+async function checkMarginLine(tab, study, at) {
+  const chart = tab.locator("#sweep .chart").first();
+  assert.equal(await chart.locator("h3").textContent(), "Smallest relative margin of the requirements");
+  const legend = await chart.locator(".legend").innerText(),
+    words = { pass: "passes", fail: "fails", undecided: "undecided" };
+  assert.match(legend, /no margin/);
+  for (const [verdict, word] of Object.entries(words))
+    assert.equal(legend.includes(word), study.id.some((_, i) => at(i)[0] === verdict), `${word} in ${legend}`);
+  const picture = chart.locator("svg[role=img]");
+  await picture.focus();
+  await tab.keyboard.press("Home");
+  same(number((await chart.locator(".tip td").first().textContent()).trim()), at(0)[1], 5);
 }

@@ -14,7 +14,7 @@ import { pages } from "./pages.mjs";
 import { checkAdjust, checkFront, checkPattern, checkRounding, checkTolerance, checkWords } from "./parts.mjs";
 import { checkFacets, checkHover, checkMap, checkNet } from "./pictures.mjs";
 import { changes, csv, DATA, picture, settle } from "./see.mjs";
-import { checkPoints, checkSurfaceOfStudy } from "./study.mjs";
+import { checkPoints, checkSurfaceOfStudy, checkVerdicts } from "./study.mjs";
 import { checkCables, checkChange, checkCharts, checkSummary, checkUnknownFigure } from "./tables.mjs";
 
 const { HIFDM, CHROMIUM, WORK } = process.env;
@@ -170,6 +170,8 @@ async function test(browser, page) {
     }
   } else if (page.fluid) {
     said = `; ${await checkFluid(tab, url)}`;
+  } else if (page.judged) {
+    await checkVerdicts(tab, page, made);
   } else if (page.study && !page.leads) {
     await checkSurfaceOfStudy(tab, made.study);
   } else if (page.study) {

@@ -47,7 +47,16 @@ function readAxes(study) {
 // ---- figures of the points ----
 
 const STAGE_STYLE = { form: ["--one", null], search: ["--two", "7 3"], refine: ["--three", "2 3"] };
-const BUILT = "tolerance"; // the stage of the as-built net
+const BUILT = "tolerance", // the stage of the as-built net
+  REQUIRED = "requirements", // that of the verdicts
+  MARGIN = "relative_margin_min";
+const isOfStage = (figure) => figure.main !== BUILT && figure.main !== REQUIRED;
+const stageOf = (figure, stage) => (isOfStage(figure) ? stage : figure.main);
+const VERDICTS = {
+  pass: ["passes", "✓", "--one"],
+  undecided: ["undecided", "?", "--ghost"],
+  fail: ["fails", "✗", "--alarm"],
+};
 const isLoadCase = (stage) => stage.startsWith("load case "); // of the as-built net
 const stageWords = (stage) => stageName[stage] || stage;
 const SHOWN_IN = { m: ["mm", 1e3], Hz: ["GHz", 1e-9] };
@@ -62,6 +71,7 @@ function figureWords({ key, objective: objectiveWords }) {
     objective = objectiveWords && clip(objectiveWords, NAME_MAX);
   if (key === "psi_m") return ["Surface error ψ", "ψ", 1, "ψ"];
   if (key === "psi_95_m") return ["95th percentile of ψ of the samples", "ψ", 0, "ψ of 95 %"];
+  if (key === MARGIN) return ["Smallest relative margin of the requirements", "margin", -1, "Smallest margin"];
   if (key === "merit") return ["Merit of all objectives with their weights", "merit", 2, "Merit"];
   if (key === "yield") return ["Yield: samples that meet all requirements", "yield", 2, "Yield"];
   if (rest === "half_path_rms_m")
@@ -101,8 +111,8 @@ function readFigures(study, mainStage) {
     .map((key) => {
       const own = rows.filter((row) => row.key === key),
         [title, name, rank, column] = figureWords(own[0]),
-        [unit, scale] = key === "yield" ? ["%", 100] : SHOWN_IN[own[0].unit] || [own[0].unit, 1],
-        main = own.some(({ stage }) => stage === BUILT) ? BUILT : mainStage;
+        [unit, scale] = key === "yield" || key === MARGIN ? ["%", 100] : SHOWN_IN[own[0].unit] || [own[0].unit, 1],
+        main = [BUILT, REQUIRED].find((stage) => own.some((row) => row.stage === stage)) || mainStage;
       const values = Object.fromEntries(study.output.filter((o) => o[key]).map((o) => [o.stage, o[key]]));
       return {
         key,
@@ -114,7 +124,7 @@ function readFigures(study, mainStage) {
         yLabel: unit ? `${name} (${unit})` : name,
         isLoss: /gain_loss_at_/.test(key),
         isError: /half_path_rms_m|gain_loss_1dB_Hz/.test(key),
-        log: /^n_/.test(key) ? false : "auto", // a count may be 0
+        log: /^n_/.test(key) || key === MARGIN ? false : "auto", // a count may be 0, a margin negative
         // a loss without a value is outside the range of the formula if the surface error has one
         isBeyond: (i, stage = main) => {
           const errors = study.output.find((o) => o.stage === stage) || {},
@@ -199,18 +209,31 @@ const pointName = (axes, i) =>
     .map((a) => headOf(a, a.label(i)))
     .join(", ");
 
+// Returns the marks of points by their verdicts, and the line of margin 0, for a chart of the margin.
+function verdictSeries(study, points, figure) {
+  const marks = Object.entries(VERDICTS).map(([verdict, [name, , colour]]) => ({
+    name,
+    colour,
+    dots: true,
+    size: 9,
+    values: points.map((i) => (i !== undefined && study.verdict[i] === verdict ? figure.of(i) : null)),
+  }));
+  const zero = { name: "no margin", colour: "--alarm", dash: "6 4", isLevel: true, values: points.map(() => 0) };
+  return [zero, ...marks.filter(({ values }) => values.some((v) => v !== null))];
+}
+
 const isWhole = (x) => x.every(Number.isInteger);
 
 function curveChart(study, figure, axis, others, groups, stage) {
   const x = valuesOf(study, axis),
     isOne = groups.length === 1;
-  const isStaged = figure.main !== BUILT,
-    stages = isOne ? figure.drawn : [isStaged ? stage : BUILT],
+  const isStaged = isOfStage(figure),
+    stages = isOne ? figure.drawn : [stageOf(figure, stage)],
     loadCases = figure.stages.filter(isLoadCase),
     styleOf = (of) => STAGE_STYLE[of] || [SERIES[(loadCases.indexOf(of) + 3) % SERIES.length], "1 2"];
   const series = groups.flatMap((group, k) =>
     stages.map((of) => ({
-      name: group.name || (isStaged ? stageWords(of) : "samples"),
+      name: group.name || (isStaged ? stageWords(of) : of === BUILT ? "samples" : "smallest margin"),
       stored: figure.key,
       values: x.map((v) => (group.at.has(v) ? figure.of(group.at.get(v), of) : null)),
       colour: isOne && isStaged ? styleOf(of)[0] : SERIES[k],
@@ -218,6 +241,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
       dots: x.length < 2,
     })),
   );
+  if (isOne && figure.key === MARGIN) series.push(...verdictSeries(study, x.map((v) => groups[0].at.get(v)), figure));
   const isAlone = isOne && isStaged && stages.length === 1 && figure.stages.length > 1; // the chart then has no legend
   return chart({
     ...figure,
@@ -229,7 +253,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
     floor: ["mm", "N"].includes(figure.unit) ? RESOLVED_MM : undefined, // smaller values are rounding
     marks:
       isOne && figure.isLead
-        ? [{ name: "best point", at: axis.value(study.best), colour: "--alarm", dash: "2 3" }]
+        ? [{ name: bestWord(study) + " point", at: axis.value(study.best), colour: "--alarm", dash: "2 3" }]
         : [],
     caption: isOne ? "" : `The chart contains one curve for each value of ${listed(others.map((a) => a.name))}.`,
     head: (i) => headOf(axis, fmt(x[i], 6)),
@@ -252,8 +276,9 @@ function markChart(study, figure, axis, others, stage) {
         stored: figure.key,
         colour: "--one",
         dots: true,
-        values: points.map((i) => figure.of(i, figure.main === BUILT ? BUILT : stage)),
+        values: points.map((i) => figure.of(i, stageOf(figure, stage))),
       },
+      ...(figure.key === MARGIN ? verdictSeries(study, points, figure) : []),
     ],
   });
 }
@@ -265,24 +290,31 @@ function heatMap(study, figure, axis, other, stage) {
     rows = valuesOf(study, other).reverse(),
     at = new Map();
   for (const i of pointsDone(study)) at.set(`${axis.value(i)} ${other.value(i)}`, i);
-  const from = figure.main === BUILT ? BUILT : stage;
+  const from = stageOf(figure, stage),
+    isMargin = figure.key === MARGIN;
   const of = (x, y) => (at.has(`${x} ${y}`) ? figure.of(at.get(`${x} ${y}`), from) : null);
   const all = range(columns.flatMap((x) => rows.map((y) => of(x, y))));
   if (!all) return null;
+  // Margin 0 is the middle of the colours. They end at the largest margin that passes, so that it differs from 0.
+  const most = all[1] > 0 ? all[1] : Math.abs(all[0]) || 1,
+    [scale, low, high] = isMargin ? [(t) => diverging(1 - t), -most, most] : [sequential, ...all];
   const label = (a, value) => (a.isNumber ? fmt(value, 4) : String(value));
   const bar = el("div", { class: "bar" });
-  const decimals = Math.min(9, Math.max(0, 2 - Math.floor(Math.log10(all[1] - all[0] || 1))));
+  const decimals = isMargin ? 1 : Math.min(9, Math.max(0, 2 - Math.floor(Math.log10(all[1] - all[0] || 1))));
   const text = (v) => (Math.abs(all[1]) < 1e5 ? minus(v.toFixed(decimals)) : fmt(v, 3));
   const cell = (x, y) => {
     const v = of(x, y);
     if (v === null) return el("td", { class: "gap", title: "no value" }, "–");
-    const t = all[1] > all[0] ? (v - all[0]) / (all[1] - all[0]) : 0,
+    const i = at.get(`${x} ${y}`),
+      [verdict, sign] = (isMargin && VERDICTS[study.verdict[i]]) || ["", ""],
+      t = high > low ? Math.min(1, Math.max(0, (v - low) / (high - low))) : 0,
+      where = `${headOf(axis, label(axis, x))}, ${headOf(other, label(other, y))}`,
       node = el("td", {
-        class: figure.isLead && at.get(`${x} ${y}`) === study.best ? "best" : undefined,
-        title: `${headOf(axis, label(axis, x))}, ${headOf(other, label(other, y))}: ${fmt(v, 5)} ${figure.unit}`,
+        class: figure.isLead && i === study.best ? "best" : undefined,
+        title: `${where}: ${minus(fmt(v, 5))} ${figure.unit}${verdict ? `, ${verdict}` : ""}`,
       });
     const paintCell = () => {
-      const colour = sequential(t),
+      const colour = scale(t),
         light = 0.299 * colour[0] + 0.587 * colour[1] + 0.114 * colour[2];
       node.style.background = rgb(colour);
       node.style.color = light > 140 ? "#000" : "#fff";
@@ -290,13 +322,16 @@ function heatMap(study, figure, axis, other, stage) {
     paintCell();
     for (const scheme of [darkScheme, printing]) scheme.addEventListener("change", paintCell);
     const hasRoom = columns.length * text(all[1]).length <= CELL_TEXT_MAX;
-    node.append(hasRoom ? text(v) : el("span", { class: "hidden" }, text(v)));
+    if (sign) node.append(`${sign} `);
+    // a telephone shows only the sign
+    const kind = !hasRoom ? "hidden" : sign && columns.length > 4 ? "amount" : undefined;
+    node.append(kind ? el("span", { class: kind }, text(v)) : text(v));
     return node;
   };
-  drawBar(bar, sequential, all, figure.yLabel);
+  drawBar(bar, scale, [low, high], figure.yLabel, all);
   return el(
     "figure",
-    { class: "heat" },
+    { class: isMargin && columns.length > 4 ? "heat wide" : "heat" },
     el("h3", {}, figure.title),
     el(
       "div",
@@ -323,7 +358,7 @@ function heatMap(study, figure, axis, other, stage) {
 
 // Returns whether the figure changes along the axis of these curves.
 function changesAlong(figure, groups, stage) {
-  const from = figure.main === BUILT ? BUILT : stage;
+  const from = stageOf(figure, stage);
   return groups.some(({ at }) => {
     const values = [...at.values()].map((i) => figure.of(i, from)),
       [low, high] = range(values) || [0, 0];
@@ -333,20 +368,21 @@ function changesAlong(figure, groups, stage) {
 
 function drawFigures(study, figures, axis, others, stage, charts, note) {
   const groups = curves(study, axis, others),
-    isMap = groups.length > CURVES_MAX && others.length === 1;
-  const has = (f) => f.drawn.includes(f.main === BUILT ? BUILT : stage),
+    hasMap = groups.length > 1 && others.length === 1,
+    isMap = (f) => hasMap && (groups.length > CURVES_MAX || f.key === MARGIN);
+  const has = (f) => f.drawn.includes(stageOf(f, stage)),
     all = figures.filter((f) => !f.isLoss && (groups.length === 1 ? f.drawn.length : has(f))),
-    drawn = all.filter((f) => groups.length === 1 || isMap || changesAlong(f, groups, stage)),
+    drawn = all.filter((f) => groups.length === 1 || isMap(f) || changesAlong(f, groups, stage)),
     flat = all.filter((f) => !drawn.includes(f));
   note.textContent = flat.length
     ? `The following quantities do not depend on ${axis.name}: ${flat.map((f) => lowered(f.title)).join("; ")}.`
     : "";
   const drawings = drawn.map((f) =>
-    groups.length <= CURVES_MAX
-      ? curveChart(study, f, axis, others, groups, stage)
-      : isMap
-        ? heatMap(study, f, axis, others[0], stage)
-        : markChart(study, f, axis, others, stage),
+    isMap(f)
+      ? heatMap(study, f, axis, others[0], stage)
+      : groups.length > CURVES_MAX || (f.key === MARGIN && groups.length > 1)
+        ? markChart(study, f, axis, others, stage)
+        : curveChart(study, f, axis, others, groups, stage),
   );
   charts.replaceChildren(...drawings.filter((c) => c));
 }
@@ -380,7 +416,8 @@ function writeCurves(study, axes, figures, mainStage) {
       .filter((a) => a.extend)
       .map((a) => {
         const end = headOf(a, a.label(study.best));
-        return `${lead.title} still decreases at the end of the axis (${end}). Add points ${a.extend} this value.`;
+        const change = lead.key === MARGIN ? "increases" : "decreases";
+        return `${lead.title} still ${change} at the end of the axis (${end}). Add points ${a.extend} this value.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
     ...psi.map(
@@ -411,7 +448,7 @@ function writeCurves(study, axes, figures, mainStage) {
         (key) => redraw({ axis: along.find((a) => a.key === key) }),
       ),
     );
-  const stages = study.output.filter((o) => o.stage !== BUILT);
+  const stages = study.output.filter((o) => o.stage !== BUILT && o.stage !== REQUIRED);
   if (stages.length > 1 && others().length)
     tools.push(
       choice(
@@ -454,7 +491,7 @@ const aligned = (v, digits) => (v === 0 ? "0" : Math.abs(v) < RESOLVED_MM ? roun
 function figureColumn(study, f, stage) {
   const of = (i) => f.of(i, stage),
     name = f.key === "psi_m" ? `ψ ${stageWords(stage)}` : isLoadCase(stage) ? `${f.column}, ${stage}` : f.column,
-    percents = (v) => v.toFixed(1),
+    percents = (v) => (Number.isFinite(v) ? minus(v.toFixed(1)) : minus(fmt(v))),
     isCount = /^n_/.test(f.key),
     format = /ratio$/.test(f.key) ? fmtRatio : isCount ? fmtCount : f.unit === "%" ? percents : aligned;
   const show = (i) =>
@@ -468,9 +505,16 @@ function writePoints(study, axes, figures, best) {
     rows = Array.from({ length: study.n }, (_, i) => i);
   const statusCell = (i) =>
     el("span", { class: "status", title: study.reason[i] || undefined }, statusText(study.status[i]));
+  const tightestCell = (i) => el("span", { class: "tightest" }, study.tightest[i]);
   const columns = [
     ...varying.map((a) => ({ name: a.text, number: a.isNumber, of: a.value, show: (i) => a.label(i) })),
     { name: "Status", of: (i) => statusText(study.status[i]), show: statusCell },
+    ...(study.tightest.length
+      ? [
+          { name: "Verdict", of: (i) => study.verdict_text[i], show: (i) => study.verdict_text[i] },
+          { name: "Tightest requirement and its margin", of: (i) => study.tightest[i], show: tightestCell },
+        ]
+      : []),
     ...(study.meets_yield.some((a) => a)
       ? [{ name: "Meets required yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
       : []),
@@ -488,7 +532,8 @@ function writePoints(study, axes, figures, best) {
       "A point is open if the required yield lies within the 95 % confidence interval of the computed yield. " +
         "Compute more samples of each open point.",
     );
-  if (best >= 0) notes.push("The best point is marked. Click a column heading to sort the table.");
+  if (study.ranked_by) notes.push(`The points are ranked by ${study.ranked_by}.`);
+  if (best >= 0) notes.push(`The ${bestWord(study)} point is marked. Click a column heading to sort the table.`);
   if (study.page.some((p) => p))
     notes.push(
       "The last column links to the report of each point. If a point has no report, the last column links to its " +
@@ -503,7 +548,8 @@ function writePoints(study, axes, figures, best) {
     most: POINTS_SHOWN,
     dense: columns.length > COLUMNS_WIDE,
     search: "value or status",
-    words: (i) => [statusText(study.status[i]), study.reason[i], ...columns.map(({ show }) => show(i))]
+    words: (i) =>
+      [statusText(study.status[i]), study.reason[i], study.tightest[i] || "", ...columns.map(({ show }) => show(i))]
         .map((text) => (typeof text === "string" ? text : study.id[i]))
         .join(" "),
   });
@@ -512,6 +558,23 @@ function writePoints(study, axes, figures, best) {
 }
 
 // ---- the page ----
+
+const isJudged = (study) => study.verdict.some((word) => word !== "none");
+// The first point of the ranking is the best one only if it passes.
+const bestWord = (study) => (isJudged(study) && study.verdict[study.best] !== "pass" ? "closest" : "best");
+
+// Writes which points pass. If the closest point does not pass, none does.
+function writeAdvice(study) {
+  if (!study.advice) return null;
+  const closest = study.best >= 0 && bestWord(study) === "closest" ? study.verdict_text[study.best] : "";
+  return el(
+    "p",
+    { class: "advice" },
+    `${study.advice.replace(/^n/, "N")}. `,
+    closest ? `The verdict on the closest point is: ${closest}. ` : "",
+    / between the points /.test(study.advice) ? "Values between the points have not been tried." : "",
+  );
+}
 
 const statusText = (word) =>
   word === "not_evaluated" ? "missing" : word === "ok" ? "done" : word.replace(/_/g, " ");
@@ -557,12 +620,20 @@ function writeStudy(study) {
         ]
       : failures,
   );
+  const best_is = bestWord(study),
+    ofLead = isJudged(study) ? `${best_is} point, ` : "minimum ";
   main.append(
+    ...[writeAdvice(study)].filter((node) => node),
     el(
       "dl",
       { class: "figures" },
-      best < 0 ? null : figure(`minimum ${lowered(lead.title)}`, value(lead.of(best), 4), lead.unit),
-      best < 0 ? null : varying.filter(matters).map((a) => figure(`best ${a.name}`, a.label(best), a.unit)),
+      best < 0 || !lead ? null : figure(ofLead + lowered(lead.title), value(lead.of(best), 4), lead.unit),
+      best < 0 || !lead
+        ? null
+        : varying.filter(matters).map((a) => figure(`${best_is} ${a.name}`, a.label(best), a.unit)),
+      isJudged(study)
+        ? figure("points pass", `${fmtCount(count((_, i) => study.verdict[i] === "pass"))} of ${fmtCount(study.n)}`)
+        : null,
       study.meets_yield.some((a) => a)
         ? figure(
             `points with ${required ? `a yield of ${fmt(100 * required)}\u00a0%` : "their required yield"}`,
