@@ -74,7 +74,7 @@ START_TEST(load_cases_are_columns_of_a_merge)
            "a['points/load_cases/cold/n_slack'][0] > a['points/load_cases/cold/n_slack'][1]");
     HIFDM(0, "show", merged);
     OUT("design slack 0");
-    OUT("cold slack  cold loose");
+    OUT("cold psi  cold slack");
     ck_assert_ptr_null(strstr(said.out, ", slack 0"));
     HIFDM(0, "show", merged, "--json");
     const char *json = out_as("s.json");
