@@ -266,7 +266,9 @@ hf_status hf_run_case(const hf_run_request *request, hf_summary *summary, char o
 {
     hf_run *r = calloc(1, sizeof *r);
     if (request->output.unsettled) *request->output.unsettled = NULL;
-    *summary = (hf_summary){.stage[HF_STAGE_FORM].result.status = HF_NOT_EVALUATED, .threads = 1};
+    memset(summary, 0, sizeof *summary); /* a literal would take as much of the stack */
+    summary->stage[HF_STAGE_FORM].result.status = HF_NOT_EVALUATED;
+    summary->threads = 1;
     snprintf(summary->version, sizeof summary->version, "%s", hf_store_version());
     output[0] = '\0';
     if (!r) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", request->input.case_path);
