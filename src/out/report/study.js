@@ -500,6 +500,10 @@ function figureColumn(study, f, stage) {
 }
 
 function writePoints(study, axes, figures, best) {
+  // The table has the gain loss by physical optics with the refocused feed. The charts have the other losses, too.
+  const hasOptics = figures.some((f) => /^refocused_gain_loss_at_/.test(f.key)),
+    isRadio = (f) => /gain_loss_at_|ruze|pointing/.test(f.key),
+    isInTable = (f) => !hasOptics || /^refocused_gain_loss_at_/.test(f.key) || !isRadio(f);
   const varying = axes.filter((a) => a.varies),
     fixed = axes.filter((a) => !a.varies),
     rows = Array.from({ length: study.n }, (_, i) => i);
@@ -518,7 +522,7 @@ function writePoints(study, axes, figures, best) {
     ...(study.meets_yield.some((a) => a)
       ? [{ name: "Meets required yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
       : []),
-    ...figures.flatMap((f) =>
+    ...figures.filter(isInTable).flatMap((f) =>
       f.drawn
         .filter((s) => f.key === "psi_m" || s === f.main || (isLoadCase(s) && !f.isError))
         .map((s) => figureColumn(study, f, s)),
