@@ -402,6 +402,17 @@ typedef enum { HF_SEARCH_ON, HF_SEARCH_OFF } hf_constrains;
 #define HF_REQUIRED_ENUMERATOR(name, word, unit, description) HF_REQUIRED_##name,
 typedef enum { HF_REQUIRED_FIGURES(HF_REQUIRED_ENUMERATOR) HF_REQUIRED_N_FIGURE } hf_required_figure;
 #undef HF_REQUIRED_ENUMERATOR
+/* Figures of a set of cables, and errors of the surface, which have a feed. */
+enum {
+    HF_REQUIRED_OF_SET =
+        1 << HF_REQUIRED_TENSION | 1 << HF_REQUIRED_RATIO | 1 << HF_REQUIRED_SLACK | 1 << HF_REQUIRED_MASS,
+    HF_REQUIRED_OF_SURFACE = 1 << HF_REQUIRED_SURFACE | 1 << HF_REQUIRED_FACETS
+};
+/* Returns whether a figure is one of these. */
+static inline bool hf_required_is_of(hf_required_figure figure, int figures)
+{
+    return (figures >> figure & 1) != 0;
+}
 /* Words of the figures, terminated by NULL, and their units. */
 extern const char *const hf_required_figure_word[HF_REQUIRED_N_FIGURE + 1];
 extern const char *const hf_required_figure_unit[HF_REQUIRED_N_FIGURE];

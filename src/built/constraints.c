@@ -81,7 +81,7 @@ static size_t place_of(const hf_built_constraints *c, int k, int i_sample)
 
 static bool is_of_surface(const hf_required_column *c)
 {
-    return c->figure == HF_REQUIRED_SURFACE || c->figure == HF_REQUIRED_FACETS;
+    return hf_required_is_of(c->figure, HF_REQUIRED_OF_SURFACE);
 }
 
 static int compare_down(const void *a, const void *b)
@@ -582,10 +582,8 @@ hf_status hf_built_constraints_make(const hf_required *q, const hf_model *m, con
     for (int i = 0; i < 4 * c->n_facet; i++)
         c->corner_row[i] = m->row_of_node[facets->corner[i]];
     c->as.unit = c->unit;
-    for (int k = 0; k < c->as.n; k++) {
-        hf_required_figure figure = q->row[c->row[k]].figure;
-        c->needs_surface |= figure == HF_REQUIRED_SURFACE || figure == HF_REQUIRED_FACETS;
-    }
+    for (int k = 0; k < c->as.n; k++)
+        c->needs_surface |= hf_required_is_of(q->row[c->row[k]].figure, HF_REQUIRED_OF_SURFACE);
     for (int state = 0; state < q->n_state; state++) {
         c->state_of_samples[state] = state == 0 ? 0 : -1;
         for (int s = 1; nets && s < nets->n_sample_state; s++)

@@ -13,12 +13,6 @@
 
 /* ---- columns ---- */
 
-static bool has_set(hf_required_figure figure)
-{
-    return figure == HF_REQUIRED_TENSION || figure == HF_REQUIRED_RATIO || figure == HF_REQUIRED_SLACK ||
-           figure == HF_REQUIRED_MASS;
-}
-
 /* Returns the bits of the load cases that a row selects. */
 static unsigned states_of(const hf_required *q, const hf_requirement_settings *r)
 {
@@ -65,7 +59,7 @@ hf_status hf_required_create(int n, const hf_requirement_settings *row, const hf
     HF_TRY(HF_ARENA_ARRAYS(&q->block, HF_ARRAY(cable, (size_t)n * (size_t)scene->n_cable)));
     for (int i = 0; i < n; i++, cable += scene->n_cable) {
         const hf_requirement_settings *r = &row[i];
-        int n_cable = has_set(r->figure) ? hf_cable_pick(scene, r->set, cable) : 0;
+        int n_cable = hf_required_is_of(r->figure, HF_REQUIRED_OF_SET) ? hf_cable_pick(scene, r->set, cable) : 0;
         q->states[i] = states_of(q, r);
         q->low[i] = isnan(r->at_least) ? -1 : column_of(q, r, true, n_cable, cable, q->states[i]);
         q->high[i] = isnan(r->at_most) ? -1 : column_of(q, r, false, n_cable, cable, q->states[i]);
@@ -88,10 +82,10 @@ const char *hf_required_state_name(const hf_required *q, int state)
 
 const char *hf_required_column_name(const hf_required_column *c, char name[HF_REQUIRED_NAME_SIZE])
 {
-    bool is_radio = c->figure == HF_REQUIRED_SURFACE || c->figure == HF_REQUIRED_FACETS;
+    bool has_feed = hf_required_is_of(c->figure, HF_REQUIRED_OF_SURFACE);
     const char *extreme = c->figure != HF_REQUIRED_TENSION ? "" : c->is_minimum ? "_min" : "_max";
     snprintf(name, HF_REQUIRED_NAME_SIZE, "%s%s%s%s%s%s", hf_required_figure_word[c->figure], extreme,
-             is_radio ? "_" : "", is_radio ? hf_focus_word[c->feed] : "", *c->set ? "_" : "", c->set);
+             has_feed ? "_" : "", has_feed ? hf_focus_word[c->feed] : "", *c->set ? "_" : "", c->set);
     return name;
 }
 
@@ -104,8 +98,8 @@ bool hf_required_needs_surface(const hf_required *q, bool is_many, int state)
 {
     bool needs = false;
     for (int k = 0; k < q->n_column; k++)
-        needs |= is_needed(&q->column[k], is_many, state) &&
-                 (q->column[k].figure == HF_REQUIRED_SURFACE || q->column[k].figure == HF_REQUIRED_FACETS);
+        needs |=
+            is_needed(&q->column[k], is_many, state) && hf_required_is_of(q->column[k].figure, HF_REQUIRED_OF_SURFACE);
     return needs;
 }
 
@@ -403,7 +397,8 @@ double hf_required_margin(const hf_required *q, int i, const double *value, size
 static const char *id_of(const hf_required *q, int column, double item)
 {
     if (!(item >= 0)) return "";
-    return has_set(q->column[column].figure) ? q->scene->cable_id[(int)item] : q->scene->node_id[(int)item];
+    return hf_required_is_of(q->column[column].figure, HF_REQUIRED_OF_SET) ? q->scene->cable_id[(int)item]
+                                                                           : q->scene->node_id[(int)item];
 }
 
 void hf_required_note(const hf_required *q, int i, bool is_worst, const double *value, const double *item,

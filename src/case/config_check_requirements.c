@@ -11,16 +11,6 @@
 
 static const char list[] = "requirements";
 
-enum {
-    OF_SET = 1u << HF_REQUIRED_TENSION | 1u << HF_REQUIRED_RATIO | 1u << HF_REQUIRED_SLACK | 1u << HF_REQUIRED_MASS,
-    OF_SURFACE = 1u << HF_REQUIRED_SURFACE | 1u << HF_REQUIRED_FACETS
-};
-
-static bool is_of(const hf_requirement_settings *r, unsigned figures)
-{
-    return figures >> r->figure & 1u;
-}
-
 /* Returns the bounds of a row, also those of `within`; infinite if not given. */
 static void bounds_of(const hf_requirement_settings *r, double bound[2])
 {
@@ -124,7 +114,7 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
 
 static void check_needs(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
 {
-    if (is_of(r, OF_SURFACE) && !c->has_surface)
+    if (hf_required_is_of(r->figure, HF_REQUIRED_OF_SURFACE) && !c->has_surface)
         hf_config_fault_in_row(f, list, i, "figure", "is not measured; add a section surface");
     if (r->figure == HF_REQUIRED_DEFLECTION && !(c->has_truss || c->has_truss_import || c->has_truss_ring))
         hf_config_fault_in_row(f, list, i, "figure", "needs a section truss");
@@ -137,8 +127,8 @@ void hf_config_check_requirements(const hf_case *c, hf_config_faults *f)
 {
     for (int i = 0; i < c->n_requirement; i++) {
         const hf_requirement_settings *r = &c->requirement[i];
-        hf_config_check_use(f, list, i, "set", (int)r->figure, hf_required_figure_word, OF_SET);
-        hf_config_check_use(f, list, i, "feed", (int)r->figure, hf_required_figure_word, OF_SURFACE);
+        hf_config_check_use(f, list, i, "set", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_SET);
+        hf_config_check_use(f, list, i, "feed", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_SURFACE);
         hf_config_check_set(f, list, i, r->set);
         check_bounds(i, r, f);
         check_load_case(c, i, r, f);
