@@ -118,15 +118,12 @@ static void make_sample(void *room, long i, double *cut_m, double *EA_N, double 
 {
     nets_room *r = room;
     const hf_built_nets *nets = r->nets;
-    const hf_model *m = &r->built.model;
-    const hf_load_case *load_case =
-        r->state > 0 ? &nets->load_cases->load_case[nets->sample_load_case[r->state]] : NULL;
-    if (load_case) memcpy(cut_m, m->target, (size_t)m->n_cable * sizeof *cut_m);
     hf_built_errors_draw(&r->errors, i, r->z);
-    hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
-    for (int e = 0; load_case && e < m->n_cable; e++)
-        if (load_case->rise_K[e] != 0)
-            cut_m[e] *= 1 + nets->load_cases->material.expansion_per_K[e] * load_case->rise_K[e];
+    if (r->state == 0)
+        hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
+    else
+        hf_built_errors_apply_in(&r->errors, &nets->load_cases->load_case[nets->sample_load_case[r->state]],
+                                 nets->load_cases->material.expansion_per_K, 1, r->z, cut_m, EA_N, move_m);
 }
 
 /* Sets *net to a load case or a sample, in the arrays of the room. */

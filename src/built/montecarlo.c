@@ -18,7 +18,6 @@
 #include "surface/facet_mesh.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Limits of the number of samples in one call. Their numbers are kept in at most CHUNK_BYTES until the linear model has
  * used them, but for CHUNK_MIN samples in any case. No limit affects the bits of a sample. */
@@ -159,18 +158,13 @@ typedef struct {
 } loaded_samples;
 
 /* Makes the errors of sample i in a load case, as an hf_built_sample. They are those of the same sample without load
- * case. The temperature of the load case changes the lengths as cut. */
+ * case. */
 static void make_loaded(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
 {
     const loaded_samples *l = context;
     const hf_montecarlo *t = l->t;
-    const hf_model *m = &t->built->model;
-    const double *rise_K = l->load_case->load_case->rise_K, *expansion_per_K = l->load_case->expansion_per_K;
-    memcpy(cut_m, m->target, (size_t)m->n_cable * sizeof *cut_m);
-    hf_built_errors_apply(&t->errors, t->scale, t->z + (size_t)(i - t->first) * t->n_z, cut_m, EA_N,
-                          support_displacement_m);
-    for (int e = 0; e < m->n_cable; e++)
-        if (rise_K[e] != 0) cut_m[e] *= 1 + expansion_per_K[e] * rise_K[e];
+    hf_built_errors_apply_in(&t->errors, l->load_case->load_case, l->load_case->expansion_per_K, t->scale,
+                             t->z + (size_t)(i - t->first) * t->n_z, cut_m, EA_N, support_displacement_m);
 }
 
 /* ---- measures ---- */
