@@ -21,14 +21,21 @@ typedef struct {
     double item, weight; /* weight: derivative of the constraint by the figure */
 } term;
 
+typedef struct {
+    double distance;
+    int sample;
+} ranked;
+
 /* Working memory of a thread. */
 typedef struct {
     const hf_built_constraints *c;
-    void *nets;                       /* NULL: there are none */
-    hf_cloud *cloud;                  /* [n_column] of the columns that measure a surface */
-    double *residual, *residual_rate; /* scratch of a cloud */
-    hf_surface_design fits;           /* best fits to the design */
-    hf_surface_paths paths;           /* errors of the present net, if has_paths */
+    void *nets;             /* NULL: there are none */
+    hf_cloud *cloud;        /* [n_column] of the columns that measure a surface */
+    double *residual;       /* [n_column][n_point] of the clouds at the present net */
+    double *residual_rate;  /* [n_point] scratch */
+    size_t n_point;         /* maximum number of points of a cloud */
+    hf_surface_design fits; /* best fits to the design */
+    hf_surface_paths paths; /* errors of the present net, if has_paths */
     bool has_paths;
     const hf_workspace *design;
     bool is_smooth;
@@ -36,7 +43,7 @@ typedef struct {
     double *distance; /* [n][n_sample] of each sample, or in the first entry that of the design in its load case */
     int *worst_state; /* [n][n_sample] load case of this distance */
     double *weight;   /* [n][n_sample] derivative of each constraint by these distances */
-    double *order;    /* [n_sample] scratch */
+    ranked *order;    /* [n_sample] scratch */
     term *list;       /* [n] scratch */
     double *move_m, *tension_rate; /* [HF_OBJECTIVES_AT_ONCE][3][n_node], [...][n_cable] */
     hf_arena arena;
@@ -84,9 +91,12 @@ static bool is_of_surface(const hf_required_column *c)
     return hf_required_is_of(c->figure, HF_REQUIRED_OF_SURFACE);
 }
 
+/* Orders the largest distance first, and equal ones by their samples. */
 static int compare_down(const void *a, const void *b)
 {
-    return -hf_compare_doubles(a, b);
+    const ranked *x = a, *y = b;
+    int by_distance = hf_compare_doubles(&y->distance, &x->distance);
+    return by_distance ? by_distance : x->sample - y->sample;
 }
 
 /* Returns the tension of the set of which the row allows `most` cables to be slack: the most + 1 st one from below.
@@ -109,14 +119,7 @@ static double brink_N(const hf_required_column *c, const hf_workspace *w, int mo
 /* Returns the minimum tension of the set if no cable may be slack, which brink_N finds in more time. */
 static double taut_N(const hf_required_column *c, const hf_workspace *w, int most, double *item)
 {
-    double least_N = INFINITY;
-    if (most > 0) return brink_N(c, w, most, item);
-    for (int i = 0; i < c->n_cable; i++)
-        if (w->tension_N[c->cable[i]] < least_N) {
-            least_N = w->tension_N[c->cable[i]];
-            *item = c->cable[i];
-        }
-    return least_N;
+    return most > 0 ? brink_N(c, w, most, item) : hf_required_extreme_N(c, w->tension_N, true, item);
 }
 
 /* Returns the figure of a column, and its cable or support in *item. NaN: it has no value. The errors of the surface
@@ -210,20 +213,18 @@ static double gather(constraints_room *r, int k)
     double *distance = r->distance + place_of(c, k, 0), *weight = r->weight + place_of(c, k, 0), sum = 0;
     int n = c->nets->as.n_sample;
     double tail = (1 - c->required->row[c->row[k]].share) * n;
-    memcpy(r->order, distance, (size_t)n * sizeof *distance);
-    qsort(r->order, (size_t)n, sizeof *distance, compare_down);
+    for (int i = 0; i < n; i++)
+        r->order[i] = (ranked){distance[i], i};
+    qsort(r->order, (size_t)n, sizeof *r->order, compare_down);
     int whole = (int)floor(tail * (1 + 1e-12));
     memset(weight, 0, (size_t)n * sizeof *weight);
-    if (!r->is_smooth) return r->order[whole < n ? whole : n - 1];
+    if (!r->is_smooth) return r->order[whole < n ? whole : n - 1].distance;
     if (tail < 1) tail = 1; /* fewer samples than the tail needs: the worst one */
     double left = tail;
     for (int rank = 0; rank < n && left > 0; rank++) {
         double part = fmin(1, left) / tail;
-        int i = 0;
-        while (i < n && !(distance[i] == r->order[rank] && weight[i] == 0))
-            i++;
-        weight[i] = part;
-        sum += part * distance[i];
+        weight[r->order[rank].sample] = part;
+        sum += part * r->order[rank].distance;
         left -= 1;
     }
     return sum;
@@ -331,13 +332,19 @@ static double mass_rate(const hf_required *q, const hf_required_column *c, const
 /* Returns the rate of maximum over minimum tension. */
 static double ratio_rate(const hf_required_column *c, const hf_workspace *w, const hf_objectives_rate *by)
 {
-    int low = c->cable[0], high = c->cable[0];
-    for (int i = 1; i < c->n_cable; i++) {
-        if (w->tension_N[c->cable[i]] < w->tension_N[low]) low = c->cable[i];
-        if (w->tension_N[c->cable[i]] > w->tension_N[high]) high = c->cable[i];
-    }
-    double T = w->tension_N[low];
-    return (by->tension_N[high] - w->tension_N[high] / T * by->tension_N[low]) / T;
+    double low, high;
+    double least_N = hf_required_extreme_N(c, w->tension_N, true, &low);
+    double most_N = hf_required_extreme_N(c, w->tension_N, false, &high);
+    return (by->tension_N[(int)high] - most_N / least_N * by->tension_N[(int)low]) / least_N;
+}
+
+static double surface_rate(constraints_room *r, int column, const double *move_m)
+{
+    size_t n = (size_t)r->cloud[column].n;
+    const double *residual = r->residual + (size_t)column * r->n_point;
+    hf_cloud_push(&r->cloud[column], move_m, r->residual_rate);
+    double norm = sqrt(hf_dot(n, residual, residual));
+    return norm > 0 ? hf_dot(n, residual, r->residual_rate) / norm : 0;
 }
 
 /* Returns the rate of the figure of a column whose value belongs to `item`, from the rates `by` of the net. A surface
@@ -347,17 +354,12 @@ static double figure_rate(constraints_room *r, int column, double item, const hf
 {
     const hf_model *m = r->c->model;
     const hf_required_column *c = &r->c->required->column[column];
-    hf_cloud *cloud = &r->cloud[column];
     switch (c->figure) {
     case HF_REQUIRED_PSI:
         return psi_rate(m, w, by->position_m);
     case HF_REQUIRED_SURFACE:
-    case HF_REQUIRED_FACETS: {
-        size_t n = (size_t)cloud->n;
-        hf_cloud_push(cloud, by->position_m, r->residual_rate);
-        double norm = sqrt(hf_dot(n, r->residual, r->residual));
-        return norm > 0 ? hf_dot(n, r->residual, r->residual_rate) / norm : 0;
-    }
+    case HF_REQUIRED_FACETS:
+        return surface_rate(r, column, by->position_m);
     case HF_REQUIRED_TENSION:
     case HF_REQUIRED_SLACK: /* the tension of a slack cable stays 0, but that of the design shows the way out */
         return (w->tension_N[(int)item] > 0 ? by : by_design)->tension_N[(int)item];
@@ -381,8 +383,17 @@ static double figure_rate(constraints_room *r, int column, double item, const hf
 
 /* ---- derivatives of all constraints ---- */
 
-/* Lists the constraints that depend on this net. A sample counts only in the load case in which it is
- * worst. */
+/* Prepares the cloud of a column for derivatives at this shape. Returns false if it has no best fit, and therefore no
+ * derivatives. */
+static bool linearise_cloud(constraints_room *r, int column, const hf_workspace *w)
+{
+    hf_cloud *cloud = &r->cloud[column];
+    return hf_cloud_measure(cloud, w->position_m, r->residual + (size_t)column * r->n_point) == HF_OK &&
+           hf_cloud_linearise(cloud) == HF_OK;
+}
+
+/* Lists the constraints that depend on this net and have derivatives. A sample counts only in the load case in which it
+ * is worst. */
 static int list_terms(constraints_room *r, int state, int i_sample, const hf_workspace *w)
 {
     const hf_built_constraints *c = r->c;
@@ -397,44 +408,32 @@ static int list_terms(constraints_room *r, int state, int i_sample, const hf_wor
         if (i_sample >= 0 && r->worst_state[at] != state) continue;
         distance_of(r, k, w, &is_high, &item);
         bool rises = is_high && q->row[c->row[k]].figure != HF_REQUIRED_SLACK;
-        r->list[n++] = (term){k, is_high ? q->high[c->row[k]] : q->low[c->row[k]], item, rises ? weight : -weight};
+        int column = is_high ? q->high[c->row[k]] : q->low[c->row[k]];
+        if (is_of_surface(&q->column[column]) && !linearise_cloud(r, column, w)) continue;
+        r->list[n++] = (term){k, column, item, rises ? weight : -weight};
     }
     return n;
 }
 
-/* Adds the rates of the constraints that depend on a net. follow: turns rates of the design into those of the net; NULL
- * for the design itself. */
+/* Adds the rates of the listed constraints, at the design or, is_net, at the net linearised last. */
 static hf_status add_rates(constraints_room *r, int n_term, const hf_workspace *w, bool is_net, int n_rate,
                            hf_constraints_spread *spread, const void *context, double *rate)
 {
     const hf_built_constraints *c = r->c;
     const hf_model *m = c->model;
-    const term *list = r->list;
     hf_objectives_rate by[HF_OBJECTIVES_AT_ONCE], of_net[HF_OBJECTIVES_AT_ONCE];
-    for (int t = 0; t < n_term; t++) { /* a cloud holds one shape at a time */
-        bool has_cloud = is_of_surface(&c->required->column[list[t].column]);
-        hf_cloud *cloud = &r->cloud[list[t].column];
-        if (has_cloud &&
-            (hf_cloud_measure(cloud, w->position_m, r->residual) != HF_OK || hf_cloud_linearise(cloud) != HF_OK))
-            continue; /* no fit: no derivative */
-        if (!has_cloud && t > 0 && !is_of_surface(&c->required->column[list[t - 1].column])) continue;
-        int last = t + 1; /* terms without a cloud are done together */
-        while (!has_cloud && last < n_term && !is_of_surface(&c->required->column[list[last].column]))
-            last++;
-        for (int first = 0; first < n_rate; first += HF_OBJECTIVES_AT_ONCE) {
-            int n = n_rate - first < HF_OBJECTIVES_AT_ONCE ? n_rate - first : HF_OBJECTIVES_AT_ONCE;
-            for (int j = 0; j < n; j++) {
-                double *move = r->move_m + 3 * (size_t)j * (size_t)m->n_node;
-                double *tension = r->tension_rate + (size_t)j * (size_t)m->n_cable;
-                by[j] = (hf_objectives_rate){move, tension, spread(context, first + j, move, tension)};
-            }
-            if (is_net) c->nets->as.follow(r->nets, n, by, of_net);
-            for (int j = 0; j < n; j++)
-                for (int u = t; u < last; u++)
-                    rate[(size_t)list[u].k * (size_t)n_rate + (size_t)(first + j)] +=
-                        list[u].weight *
-                        figure_rate(r, list[u].column, list[u].item, w, &by[j], is_net ? &of_net[j] : &by[j]);
+    for (int first = 0; first < n_rate && n_term > 0; first += HF_OBJECTIVES_AT_ONCE) {
+        int n = n_rate - first < HF_OBJECTIVES_AT_ONCE ? n_rate - first : HF_OBJECTIVES_AT_ONCE;
+        for (int j = 0; j < n; j++) {
+            double *move = r->move_m + 3 * (size_t)j * (size_t)m->n_node;
+            double *tension = r->tension_rate + (size_t)j * (size_t)m->n_cable;
+            by[j] = (hf_objectives_rate){move, tension, spread(context, first + j, move, tension)};
         }
+        if (is_net) c->nets->as.follow(r->nets, n, by, of_net);
+        for (int j = 0; j < n; j++)
+            for (const term *t = r->list; t < r->list + n_term; t++)
+                rate[(size_t)t->k * (size_t)n_rate + (size_t)(first + j)] +=
+                    t->weight * figure_rate(r, t->column, t->item, w, &by[j], is_net ? &of_net[j] : &by[j]);
     }
     return r->status;
 }
@@ -484,6 +483,13 @@ static void close_room(void *room)
     hf_arena_free_block(r->block);
 }
 
+/* Returns the number of points of the cloud of a column. */
+static size_t count_points(const hf_built_constraints *c, int column)
+{
+    bool is_facets = c->required->column[column].figure == HF_REQUIRED_FACETS;
+    return (size_t)(is_facets ? hf_cloud_facet_points(c->n_facet) : c->model->n_inner_node);
+}
+
 /* Lays out the clouds of the columns that measure a surface. */
 static hf_status make_clouds(constraints_room *r)
 {
@@ -498,7 +504,7 @@ static hf_status make_clouds(constraints_room *r)
                                      .along = HF_ALONG_HALF_PATH,
                                      .fit = q->column[k].feed == HF_FIXED ? HF_FIT_NONE : HF_FIT_BEST,
                                      .n_node = c->model->n_node,
-                                     .n = is_facets ? hf_cloud_facet_points(c->n_facet) : c->model->n_inner_node,
+                                     .n = (int)count_points(c, k),
                                      .n_facet = is_facets ? c->n_facet : 0,
                                      .row = is_facets ? c->corner_row : c->model->inner_row};
             hf_cloud_lay_out(&r->arena, &r->cloud[k]);
@@ -513,13 +519,15 @@ static hf_status open_room(const hf_constraints *as, void **room)
     const hf_built_constraints *c = (const void *)as;
     const hf_model *m = c->model;
     size_t n = place_of(c, c->as.n, 0), n_sample = c->nets ? (size_t)c->nets->as.n_sample + 1 : 1;
-    size_t n_point = (size_t)hf_cloud_facet_points(c->n_facet) + (size_t)m->n_inner_node, many = HF_OBJECTIVES_AT_ONCE;
+    size_t n_column = (size_t)c->required->n_column, many = HF_OBJECTIVES_AT_ONCE;
     constraints_room r = {.c = c}, *kept;
+    for (int k = 0; k < c->required->n_column; k++)
+        if (is_of_surface(&c->required->column[k]) && r.n_point < count_points(c, k)) r.n_point = count_points(c, k);
     hf_status status = HF_ARENA_ARRAYS(
-        &r.block, HF_ARRAY(kept, 1), HF_ARRAY(r.cloud, c->required->n_column), HF_ARRAY(r.residual, n_point),
-        HF_ARRAY(r.residual_rate, n_point), HF_ARRAY(r.distance, n), HF_ARRAY(r.weight, n), HF_ARRAY(r.worst_state, n),
-        HF_ARRAY(r.order, n_sample), HF_ARRAY(r.list, c->as.n), HF_ARRAY(r.move_m, 3 * many * (size_t)m->n_node),
-        HF_ARRAY(r.tension_rate, many * (size_t)m->n_cable));
+        &r.block, HF_ARRAY(kept, 1), HF_ARRAY(r.cloud, n_column), HF_ARRAY(r.residual, n_column * r.n_point),
+        HF_ARRAY(r.residual_rate, r.n_point), HF_ARRAY(r.distance, n), HF_ARRAY(r.weight, n),
+        HF_ARRAY(r.worst_state, n), HF_ARRAY(r.order, n_sample), HF_ARRAY(r.list, c->as.n),
+        HF_ARRAY(r.move_m, 3 * many * (size_t)m->n_node), HF_ARRAY(r.tension_rate, many * (size_t)m->n_cable));
     *room = kept;
     if (status != HF_OK) return status;
     *kept = r;

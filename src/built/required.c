@@ -122,12 +122,11 @@ static double psi_m(const hf_required_shape *s)
     return n > 0 ? sqrt(sum / n) : (double)NAN;
 }
 
-/* Returns the minimum or maximum tension of the set. *item becomes its cable. */
-static double extreme_N(const hf_required_column *c, const hf_required_shape *s, bool is_minimum, double *item)
+double hf_required_extreme_N(const hf_required_column *c, const double *all_N, bool is_minimum, double *item)
 {
     double worst_N = is_minimum ? INFINITY : -INFINITY;
     for (int i = 0; i < c->n_cable; i++) {
-        double tension_N = s->tension_N[c->cable[i]];
+        double tension_N = all_N[c->cable[i]];
         if (is_minimum ? tension_N >= worst_N : tension_N <= worst_N) continue;
         worst_N = tension_N;
         *item = c->cable[i];
@@ -153,7 +152,8 @@ static double count_slack(const hf_required_column *c, const hf_required_shape *
  * the minimum. */
 static double ratio_of(const hf_required_column *c, const hf_required_shape *s, double *item)
 {
-    double at_most, least_N = extreme_N(c, s, true, item), most_N = extreme_N(c, s, false, &at_most);
+    double at_most, least_N = hf_required_extreme_N(c, s->tension_N, true, item),
+                    most_N = hf_required_extreme_N(c, s->tension_N, false, &at_most);
     if (least_N < 0 && !is_slack(s, (int)*item)) return (double)NAN;
     return is_slack(s, (int)*item) ? (double)INFINITY : most_N / least_N;
 }
@@ -220,7 +220,7 @@ double hf_required_figure_of(const hf_required *q, const hf_required_column *c, 
     case HF_REQUIRED_FACETS:
         return c->feed == HF_FIXED ? p->facets_m : p->facets_fit_m;
     case HF_REQUIRED_TENSION:
-        return extreme_N(c, s, c->is_minimum, item);
+        return hf_required_extreme_N(c, s->tension_N, c->is_minimum, item);
     case HF_REQUIRED_RATIO:
         return ratio_of(c, s, item);
     case HF_REQUIRED_SLACK:
@@ -341,7 +341,7 @@ static double error_of(const hf_required *q, const hf_required_column *c, const 
         return set_error_N(c, s, bound_m);
     case HF_REQUIRED_RATIO:
         error_N = set_error_N(c, s, bound_m);
-        least_N = extreme_N(c, s, true, &at);
+        least_N = hf_required_extreme_N(c, s->tension_N, true, &at);
         return error_N < least_N ? (value + 1) * error_N / (least_N - error_N) : (double)NAN;
     case HF_REQUIRED_SLACK: /* a cable whose tension is within its error of the limit may count or not */
         return count_doubtful(c, s, bound_m);

@@ -67,6 +67,9 @@ typedef struct {
     const hf_workspace *work; /* laws and target values in effect, for error bounds; may be NULL without them */
 } hf_required_shape;
 
+/* Returns the minimum or maximum tension of the set of a column. *item becomes its cable. */
+double hf_required_extreme_N(const hf_required_column *column, const double *tension_N, bool is_minimum, double *item);
+
 /* Returns the figure of a column for a shape. *item becomes the cable or support with this value, or stays. */
 double hf_required_figure_of(const hf_required *required, const hf_required_column *column,
                              const hf_required_shape *shape, double *item);
