@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "built/constraints.h"
 #include "run/load_case_stage.h"
+#include "run/requirements_stage.h"
 #include "run/tolerance_stage.h"
 
 #include <math.h>
@@ -89,18 +90,13 @@ static bool constrains(const hf_problem *p)
 static hf_status make_constraints(hf_problem *p, hf_messages *messages)
 {
     struct hf_problem_nets *q = p->nets;
-    const hf_case *c = &p->settings;
-    HF_TRY(hf_config_material(c, &p->scene, &q->masses, messages));
-    hf_status status = hf_required_create(c->n_requirement, c->requirement, &p->scene, &p->load_cases,
-                                          q->masses.mass_kg_per_m, &q->required);
-    if (status == HF_OK) {
-        unsigned many = hf_built_constraints_states(&q->required, true);
-        bool has_nets = many || hf_built_constraints_states(&q->required, false) > 1u;
-        for (int state = 1; state < q->required.n_state; state++)
-            if (many >> state & 1u) q->nets.sample_load_case[q->nets.n_sample_state++] = state - 1;
-        status = hf_built_constraints_make(&q->required, &p->model, has_nets ? &q->nets : NULL, &p->surface, &p->facets,
-                                           &q->constraints);
-    }
+    HF_TRY(hf_requirements_stage_rows(p, &q->masses, &q->required, messages));
+    unsigned many = hf_built_constraints_states(&q->required, true);
+    bool has_nets = many || hf_built_constraints_states(&q->required, false) > 1u;
+    for (int state = 1; state < q->required.n_state; state++)
+        if (many >> state & 1u) q->nets.sample_load_case[q->nets.n_sample_state++] = state - 1;
+    hf_status status = hf_built_constraints_make(&q->required, &p->model, has_nets ? &q->nets : NULL, &p->surface,
+                                                 &p->facets, &q->constraints);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the requirements");
 }
 

@@ -65,21 +65,25 @@ hf_status hf_requirements_stage_check(const hf_problem *p, hf_messages *messages
 
 /* ---- measuring the design ---- */
 
-hf_status hf_requirements_stage_open(const hf_problem *p, hf_requirements_stage *q, hf_messages *messages)
+hf_status hf_requirements_stage_rows(const hf_problem *p, hf_material *masses, hf_required *q, hf_messages *messages)
 {
     const hf_case *c = &p->settings;
     bool needs_mass = false;
-    *q = (hf_requirements_stage){0};
     for (int i = 0; i < c->n_requirement; i++)
         needs_mass |= c->requirement[i].figure == HF_REQUIRED_MASS;
-    if (needs_mass) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
-    hf_required *of = &q->required;
+    if (needs_mass) HF_TRY(hf_config_material(c, &p->scene, masses, messages));
     hf_status status =
-        hf_required_create(c->n_requirement, c->requirement, &p->scene, &p->load_cases, q->material.mass_kg_per_m, of);
-    size_t n = (size_t)of->n_state * (size_t)of->n_column;
-    if (status == HF_OK)
-        status = HF_ARENA_ARRAYS(&q->block, HF_ARRAY(q->value, n), HF_ARRAY(q->item, n), HF_ARRAY(q->error, n));
-    if (status != HF_OK) return hf_error(messages, status, "out of memory for the requirements");
+        hf_required_create(c->n_requirement, c->requirement, &p->scene, &p->load_cases, masses->mass_kg_per_m, q);
+    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the requirements");
+}
+
+hf_status hf_requirements_stage_open(const hf_problem *p, hf_requirements_stage *q, hf_messages *messages)
+{
+    *q = (hf_requirements_stage){0};
+    HF_TRY(hf_requirements_stage_rows(p, &q->material, &q->required, messages));
+    size_t n = (size_t)q->required.n_state * (size_t)q->required.n_column;
+    if (HF_ARENA_ARRAYS(&q->block, HF_ARRAY(q->value, n), HF_ARRAY(q->item, n), HF_ARRAY(q->error, n)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the requirements");
     for (size_t k = 0; k < n; k++)
         q->value[k] = q->item[k] = q->error[k] = (double)NAN;
     return HF_OK;

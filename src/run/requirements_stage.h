@@ -19,7 +19,12 @@ typedef struct {
  * fault. */
 hf_status hf_requirements_stage_check(const hf_problem *problem, hf_messages *messages);
 
-/* Prepares the rows, which have been checked. Returns HF_OK, HF_NO_MEMORY or HF_BAD_CASE, with a message. The problem
+/* Prepares the rows of a problem, which have been checked. `masses` receives the mass of the cables, if a row needs it.
+ * Returns HF_OK, HF_NO_MEMORY or HF_BAD_CASE, with a message. The caller frees both in any case. */
+hf_status hf_requirements_stage_rows(const hf_problem *problem, hf_material *masses, hf_required *required,
+                                     hf_messages *messages);
+
+/* Prepares the measurement of these rows. Returns HF_OK, HF_NO_MEMORY or HF_BAD_CASE, with a message. The problem
  * is borrowed. */
 hf_status hf_requirements_stage_open(const hf_problem *problem, hf_requirements_stage *stage, hf_messages *messages);
 void hf_requirements_stage_free(hf_requirements_stage *stage);
