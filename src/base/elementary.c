@@ -43,6 +43,12 @@ double hf_norm(double x, double y, double z)
     return ldexp(sqrt(x * x + y * y + z * z), exponent);
 }
 
+double hf_norm_rate(const double *v, const double *rate)
+{
+    double size = hf_norm(v[0], v[1], v[2]);
+    return size > 0 ? (v[0] * rate[0] + v[1] * rate[1] + v[2] * rate[2]) / size : 0;
+}
+
 double hf_distance(const double *a, const double *b)
 {
     return hf_norm(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

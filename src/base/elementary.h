@@ -26,6 +26,9 @@ int hf_list_largest(int i, const double *value, int n_max, int n, int *list);
  * is infinite if a component is infinite, else NaN if a component is NaN. */
 double hf_norm(double x, double y, double z);
 
+/* Returns the rate of the size of a vector [3] that changes by `rate` [3]. The rate of a vector of size 0 is 0. */
+double hf_norm_rate(const double *vector, const double *rate);
+
 /* Returns the distance of two points [3]. */
 double hf_distance(const double *a, const double *b);
 

@@ -274,13 +274,6 @@ static hf_status measure_design(void *room, const hf_workspace *w, bool is_smoot
 
 /* ---- derivatives of a figure ---- */
 
-/* Returns the change of the length of the vector d [3] when it changes by `rate`. */
-static double size_rate(const double d[3], const double rate[3])
-{
-    double size = hf_norm(d[0], d[1], d[2]);
-    return size > 0 ? (d[0] * rate[0] + d[1] * rate[1] + d[2] * rate[2]) / size : 0;
-}
-
 static double psi_rate(const hf_model *m, const hf_workspace *w, const double *move)
 {
     double sum = 0, square = 0;
@@ -294,34 +287,30 @@ static double psi_rate(const hf_model *m, const hf_workspace *w, const double *m
 }
 
 /* Returns the rate of the force of the net on a support. */
-static double pull_rate(const hf_model *m, const hf_workspace *w, int row, const hf_objectives_rate *by)
+static double support_rate(const hf_model *m, const hf_workspace *w, int row, const hf_objectives_rate *by)
 {
-    double force[3] = {0}, force_rate[3] = {0}, u[3];
+    double force[3] = {0}, force_rate[3] = {0}, u[3], pull_rate[3];
     for (int e = 0; e < m->n_cable; e++) {
-        int a = m->end_row[2 * e], b = m->end_row[2 * e + 1], sign = a == row ? 1 : -1;
-        if (a != row && b != row) continue;
-        double length = hf_newton_matrix_direction(m, w->position_m, e, u), along = 0, change[3];
-        for (int c = 0; c < 3; c++) {
-            change[c] = by->position_m[c * m->n_node + b] - by->position_m[c * m->n_node + a];
-            along += u[c] * change[c];
-        }
+        int sign = m->end_row[2 * e] == row ? 1 : -1;
+        if (m->end_row[2 * e] != row && m->end_row[2 * e + 1] != row) continue;
+        hf_newton_matrix_direction(m, w->position_m, e, u);
+        hf_newton_matrix_pull_rate(m, w->position_m, e, w->tension_N[e], by->tension_N[e], by->position_m, pull_rate);
         for (int c = 0; c < 3; c++) {
             force[c] += sign * w->tension_N[e] * u[c];
-            force_rate[c] += sign * (by->tension_N[e] * u[c] + w->tension_N[e] * ((change[c] - along * u[c]) / length));
+            force_rate[c] += sign * pull_rate[c];
         }
     }
-    return size_rate(force, force_rate);
+    return hf_norm_rate(force, force_rate);
 }
 
 static double mass_rate(const hf_required *q, const hf_required_column *c, const hf_model *m, const hf_workspace *w,
                         const hf_objectives_rate *by)
 {
-    double sum = 0, u[3];
+    double sum = 0, u[3], relative[3];
     for (int i = 0; i < c->n_cable; i++) {
-        int e = c->cable[i], a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
-        double length = hf_newton_matrix_direction(m, w->position_m, e, u), longer = 0;
-        for (int d = 0; d < 3; d++)
-            longer += u[d] * (by->position_m[d * m->n_node + b] - by->position_m[d * m->n_node + a]);
+        int e = c->cable[i];
+        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
+        double longer = hf_newton_matrix_length_rate(m, e, u, by->position_m, relative);
         double EA_N = q->scene->EA_N ? q->scene->EA_N[e] : 0, grow = EA_N > 0 ? 1 + w->tension_N[e] / EA_N : 1;
         double change = longer / grow - (EA_N > 0 ? length / (grow * grow) * by->tension_N[e] / EA_N : 0);
         sum += q->mass_kg_per_m[e] * change;
@@ -368,10 +357,10 @@ static double figure_rate(constraints_room *r, int column, double item, const hf
     case HF_REQUIRED_DEFLECTION:
         for (int k = 0; k < m->n_attachment; k++)
             if (m->node_of_row[m->attachment_row[k]] == (int)item)
-                return size_rate(w->displacement_m + 3 * (size_t)k, by->displacement_m + 3 * (size_t)k);
+                return hf_norm_rate(w->displacement_m + 3 * (size_t)k, by->displacement_m + 3 * (size_t)k);
         return 0;
     case HF_REQUIRED_PULL:
-        return pull_rate(m, w, m->row_of_node[(int)item], by);
+        return support_rate(m, w, m->row_of_node[(int)item], by);
     case HF_REQUIRED_MASS:
         return mass_rate(r->c->required, c, m, w, by);
     case HF_REQUIRED_LOOSE:

@@ -39,6 +39,28 @@ static inline double hf_newton_matrix_direction(const hf_model *model, const dou
     return length;
 }
 
+/* Returns the rate of the length of a cable with this unit vector when the nodes move by move_m [3][n_node]. `relative`
+ * [3] becomes the move of its second end relative to its first. */
+static inline double hf_newton_matrix_length_rate(const hf_model *model, int i_cable, const double unit[3],
+                                                  const double *move_m, double relative[3])
+{
+    for (int c = 0; c < 3; c++)
+        relative[c] = move_m[c * model->n_node + model->end_row[2 * i_cable + 1]] -
+                      move_m[c * model->n_node + model->end_row[2 * i_cable]];
+    return unit[0] * relative[0] + unit[1] * relative[1] + unit[2] * relative[2];
+}
+
+/* Sets rate [3] to the rate of the pull of a cable at its first end when the nodes move and its tension changes. */
+static inline void hf_newton_matrix_pull_rate(const hf_model *model, const double *position_m, int i_cable,
+                                              double tension_N, double tension_rate, const double *move_m,
+                                              double rate[3])
+{
+    double unit[3], length = hf_newton_matrix_direction(model, position_m, i_cable, unit);
+    double along = hf_newton_matrix_length_rate(model, i_cable, unit, move_m, rate);
+    for (int c = 0; c < 3; c++)
+        rate[c] = tension_rate * unit[c] + tension_N * ((rate[c] - along * unit[c]) / length);
+}
+
 /* Sets force [3 n_moving] to the loads, N. */
 static inline void hf_newton_matrix_set_loads(const hf_model *model, const hf_workspace *workspace, double *force)
 {

@@ -475,19 +475,11 @@ static void push_psi(const hf_model *m, const hf_objectives_point *p, const doub
             rate[3 * k + c] = p->psi_per_m[k] * move[c * m->n_node + m->inner_row[k]];
 }
 
-/* Sets `relative` to the change of the vector from the first end of cable e to the other. */
-static void relative_move(const hf_model *m, int e, const double *move, double relative[3])
-{
-    for (int c = 0; c < 3; c++)
-        relative[c] = move[c * m->n_node + m->end_row[2 * e + 1]] - move[c * m->n_node + m->end_row[2 * e]];
-}
-
 static double length_rate(const hf_model *m, const hf_workspace *w, int e, const double *move)
 {
     double u[3], relative[3];
     hf_newton_matrix_direction(m, w->position_m, e, u);
-    relative_move(m, e, move, relative);
-    return u[0] * relative[0] + u[1] * relative[1] + u[2] * relative[2];
+    return hf_newton_matrix_length_rate(m, e, u, move, relative);
 }
 
 static void push_cables(const hf_objective *g, const hf_model *m, const hf_workspace *w, const hf_objectives_rate *by,
@@ -512,13 +504,6 @@ static void push_cables(const hf_objective *g, const hf_model *m, const hf_works
     if (figure == HF_FIGURE_MASS) rate[0] = g->settings.mass_kg_per_m * sum_m;
 }
 
-/* Returns the change of the length of the vector v when it changes by `rate`; 0 for v = 0. */
-static double size_rate(const double v[3], const double rate[3])
-{
-    double size = hf_norm(v[0], v[1], v[2]);
-    return size > 0 ? (v[0] * rate[0] + v[1] * rate[1] + v[2] * rate[2]) / size : 0;
-}
-
 void hf_objectives_pull_rates(const hf_model *m, const hf_workspace *w, hf_objectives_point *p,
                               const hf_objectives_rate *by, double *rate)
 {
@@ -526,17 +511,13 @@ void hf_objectives_pull_rates(const hf_model *m, const hf_workspace *w, hf_objec
     memset(p->rate_N, 0, 3 * (size_t)n * sizeof(double));
     hf_objectives_pulls(m, w, p);
     for (int e = 0; e < m->n_cable; e++) {
-        double u[3], pull[3];
+        double pull[3];
         if (!hf_newton_matrix_is_at_support(m, e)) continue;
-        double length = hf_newton_matrix_direction(m, w->position_m, e, u);
-        relative_move(m, e, by->position_m, pull);
-        double along = u[0] * pull[0] + u[1] * pull[1] + u[2] * pull[2];
-        for (int c = 0; c < 3; c++)
-            pull[c] = by->tension_N[e] * u[c] + w->tension_N[e] * ((pull[c] - along * u[c]) / length);
+        hf_newton_matrix_pull_rate(m, w->position_m, e, w->tension_N[e], by->tension_N[e], by->position_m, pull);
         hf_newton_matrix_add_to_supports(m, e, pull, p->rate_N);
     }
     for (int i = 0; i < n; i++)
-        rate[i] = size_rate(p->force_N + 3 * (size_t)i, p->rate_N + 3 * (size_t)i);
+        rate[i] = hf_norm_rate(p->force_N + 3 * (size_t)i, p->rate_N + 3 * (size_t)i);
 }
 
 /* Computes the rates of the residuals of a maximum of n sizes. */
@@ -548,7 +529,7 @@ static void push_largest(int n, hf_figure_kind figure, const hf_model *m, const 
         hf_objectives_pull_rates(m, w, p, by, rate);
     else
         for (int i = 0; i < n; i++)
-            rate[i] = size_rate(w->displacement_m + 3 * (size_t)i, by->displacement_m + 3 * (size_t)i);
+            rate[i] = hf_norm_rate(w->displacement_m + 3 * (size_t)i, by->displacement_m + 3 * (size_t)i);
     take_sizes(figure, m, w, p);
     smooth_maximum(n, p->size, &norm);
     push_smooth(n, p->size, rate);
