@@ -96,7 +96,7 @@ double hf_required_margin(const hf_required *required, int i, const double *valu
 void hf_required_judge_nominal(const hf_required *required, int i, const double *value, const double *item,
                                const double *error, hf_requirement_verdict *to);
 
-/* Copies to the verdict what a net says about row i: value[state * stride + column] and item, of the same form.
+/* Copies to the verdict the figures of a net for row i: value[state * stride + column] and item, of the same form.
  * is_worst: it is the worst net, else the one with the value of the row. */
 void hf_required_note(const hf_required *required, int i, bool is_worst, const double *value, const double *item,
                       size_t stride, hf_requirement_verdict *to);

@@ -517,7 +517,7 @@ static void print_same(const hf_merged *m, FILE *f)
     end_items(&t);
 }
 
-/* Says whether the best point passes. If it does not, then no point passes. */
+/* Adds whether the best point passes. If it does not, then no point passes. */
 static void add_verdict(const hf_merged *m, items *line)
 {
     const hf_merged_judgement *j = &m->judgement[m->best];

@@ -335,10 +335,10 @@ static const char *name_side(const feasible *q, int side, char text[SIDE_SIZE])
     return text;
 }
 
-static void tell_one(const feasible *q, int side, double best, const char *advice, hf_messages *messages)
+static void report_one(const feasible *q, int side, double best, const char *advice, hf_messages *messages)
 {
     const hf_feasible_bound *b = &q->bound[side / N_SIDE];
-    char place[HF_LOCATION_SIZE], wanted[SIDE_SIZE], found[SIDE_SIZE] = "", given[64] = "";
+    char place[HF_LOCATION_SIZE], text[SIDE_SIZE], found[SIDE_SIZE] = "", given[64] = "";
     bool is_lower = side % N_SIDE == LOWER, is_ratio = side % N_SIDE == RATIO;
     if (q->p->settings.form.prestress == HF_PRESTRESS_EXACT)
         snprintf(given, sizeof given, " with form.pretension_N %.6g", q->p->settings.form.pretension_N);
@@ -351,12 +351,12 @@ static void tell_one(const feasible *q, int side, double best, const char *advic
     hf_warning(messages,
                "%s: no design at the target positions meets this limit (%s)%s%s%s%s. Designs away from the target "
                "positions may meet it",
-               place_of(q, b, place), name_side(q, side, wanted), found, *advice ? "; " : "", advice,
+               place_of(q, b, place), name_side(q, side, text), found, *advice ? "; " : "", advice,
                *advice ? "" : "; loosen the limit or widen the design variables");
 }
 
-static void tell_contradiction(const feasible *q, int n, const int *side, double amount_N, const char *advice,
-                               hf_messages *messages)
+static void report_contradiction(const feasible *q, int n, const int *side, double amount_N, const char *advice,
+                                 hf_messages *messages)
 {
     char place[HF_LOCATION_SIZE], list[NAMED_MAX * (SIDE_SIZE + 64)] = "";
     size_t used = 0;
@@ -394,30 +394,30 @@ static int list_sides(const feasible *q, int side[N_SIDE * HF_FEASIBLE_BOUNDS_MA
     return n;
 }
 
-/* Tells which bounds cannot be met, one by one or together. */
-static hf_status tell(feasible *q, double amount_N, const char *advice, hf_messages *messages)
+/* Reports which bounds cannot be met, one by one or together. */
+static hf_status report(feasible *q, double amount_N, const char *advice, hf_messages *messages)
 {
-    int side[N_SIDE * HF_FEASIBLE_BOUNDS_MAX], n = list_sides(q, side), n_told = 0;
+    int side[N_SIDE * HF_FEASIBLE_BOUNDS_MAX], n = list_sides(q, side), n_reported = 0;
     for (int i = 0; i < n && i < NAMED_MAX; i++) {
         double best = NAN;
         bool is_missed = false;
         hf_status status = find_best(q, side[i], n == 1 ? amount_N : (double)NAN, &best, &is_missed);
         if (status == HF_NO_MEMORY) return status;
         if (!is_missed) continue;
-        tell_one(q, side[i], status == HF_OK ? best : (double)NAN, advice, messages);
-        n_told++;
+        report_one(q, side[i], status == HF_OK ? best : (double)NAN, advice, messages);
+        n_reported++;
     }
-    if (n_told == 0 && n > 0) tell_contradiction(q, n, side, amount_N, advice, messages);
+    if (n_reported == 0 && n > 0) report_contradiction(q, n, side, amount_N, advice, messages);
     return HF_OK;
 }
 
 /* Warns about bounds that the tensions of single cables miss in all designs, at any positions. Returns their number. */
-static int tell_given(const feasible *q, hf_messages *messages)
+static int report_given(const feasible *q, hf_messages *messages)
 {
     int n = 0;
     for (int side = 0; side < N_SIDE * q->n_bound; side++) {
         const hf_feasible_bound *b = &q->bound[side / N_SIDE];
-        char place[HF_LOCATION_SIZE], wanted[SIDE_SIZE];
+        char place[HF_LOCATION_SIZE], text[SIDE_SIZE];
         bool is_lower = side % N_SIDE == LOWER;
         double worst_N = MISSED * q->p->model.reference_N;
         int worst = -1;
@@ -432,7 +432,7 @@ static int tell_given(const feasible *q, hf_messages *messages)
         hf_warning(messages,
                    "%s: no design meets this limit (%s), because cable '%s' has a tension of at %s %.6g N in every "
                    "design. Loosen the limit, or vary the tension of this cable further",
-                   place_of(q, b, place), name_side(q, side, wanted), q->p->scene.cable_id[worst],
+                   place_of(q, b, place), name_side(q, side, text), q->p->scene.cable_id[worst],
                    is_lower ? "most" : "least", is_lower ? q->upper_N[worst] : q->lower_N[worst]);
         n++;
     }
@@ -446,10 +446,10 @@ static hf_status look(feasible *q, const hf_problem_source *source, char advice[
     set_tensions(q);
     if (q->p->settings.form.prestress == HF_PRESTRESS_EXACT) HF_TRY(advise(q, source, advice));
     set_ranges(q);
-    if (tell_given(q, messages) > 0) return HF_OK;
+    if (report_given(q, messages) > 0) return HF_OK;
     HF_TRY(solve_all(q, &amount_N));
     if (amount_N <= MISSED * q->p->model.reference_N) return HF_OK;
-    return tell(q, amount_N, advice, messages);
+    return report(q, amount_N, advice, messages);
 }
 
 hf_status hf_feasible_check_bounds(const hf_problem *p, const hf_problem_source *source, int n_bound,

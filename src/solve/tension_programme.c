@@ -59,7 +59,7 @@
     X(double, slack_step, k, "")                                                                                       \
     X(double, weight_step, k, "")                                                                                      \
     X(double, miss, k, "residual of the slacks")                                                                       \
-    X(double, aim, k, "wanted change of z s")                                                                          \
+    X(double, aim, k, "required change of z s")                                                                        \
     X(double, band, n *((size_t)to->half_bandwidth + 1), "[n][half_bandwidth+1]")
 
 typedef struct {
@@ -299,7 +299,7 @@ static hf_status factor(iteration *q)
 
 /* ---- steps ---- */
 
-/* Sets the steps for the wanted changes `aim` of z s. */
+/* Sets the steps for the required changes `aim` of z s. */
 static void find_step(iteration *q)
 {
     int n_cable = q->m->n_cable, n = q->n;

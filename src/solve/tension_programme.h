@@ -36,7 +36,7 @@ typedef struct {
 } hf_tension_programme;
 
 /* Solves a programme. shared_N [n_shared] receives y, with errors of about 1e-6 of the reference tension. multiplier
- * [n_row] receives the multipliers of the rows, which are not negative (NULL: not wanted). Returns HF_OK.
+ * [n_row] receives the multipliers of the rows, which are not negative (NULL: not needed). Returns HF_OK.
  * Returns HF_NOT_CONVERGED if no tensions within the bounds hold the net, if c'y has no minimum, or if rounding hides
  * the answer. Returns HF_NO_MEMORY. */
 hf_status hf_tension_programme_solve(const hf_tension_programme *programme, double *shared_N, double *multiplier);

@@ -169,7 +169,7 @@ START_TEST(summary_begins_with_the_answer)
 }
 END_TEST
 
-/* By its facets where a surface is wanted, with both feeds: by physical optics at the highest frequency, without
+/* By its facets where there is a target surface, with both feeds: by physical optics at the highest frequency, without
  * frequencies by Ruze's formula from the errors weighted by the illumination. */
 START_TEST(surface_says_what_a_reflector_is_good_to)
 {

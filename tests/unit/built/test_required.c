@@ -61,13 +61,13 @@ START_TEST(columns_are_measured_once)
     static const struct {
         const char *name;
         unsigned nominal, many;
-    } wanted[] = {{"tension_min", 1, 4},  {"tension_max", 1, 0},      {"tension_max_inner", 0, 7},
+    } expected[] = {{"tension_min", 1, 4},  {"tension_max", 1, 0},      {"tension_max_inner", 0, 7},
                   {"slack_cables", 2, 0}, {"facets_refocused", 7, 0}, {"facets_fixed", 0, 2}};
     ck_assert_int_eq(q.n_column, 6);
     for (int k = 0; k < q.n_column; k++) {
-        ck_assert_str_eq(hf_required_column_name(&q.column[k], name), wanted[k].name);
-        ck_assert_uint_eq(q.column[k].nominal, wanted[k].nominal);
-        ck_assert_uint_eq(q.column[k].many, wanted[k].many);
+        ck_assert_str_eq(hf_required_column_name(&q.column[k], name), expected[k].name);
+        ck_assert_uint_eq(q.column[k].nominal, expected[k].nominal);
+        ck_assert_uint_eq(q.column[k].many, expected[k].many);
     }
     ck_assert(q.low[0] == 0 && q.high[0] == 1 && q.low[1] == 0 && q.high[1] == -1 && q.low[3] == q.high[3]);
     ck_assert(q.n_share == 3 && q.share[0] == 1 && q.share[2] == 5);
@@ -106,9 +106,9 @@ START_TEST(figures_of_a_star_by_hand)
     hf_required_measure(&q, false, 0, &s, value, item);
     const double length_m[] = {hypot(1.003, 4e-3), hypot(1.997, 4e-3), hypot(1.004, 3e-3)};
     static const double wanted_item[] = {2, 0, 2, 2, -1, 1, -1, -1, -1};
-    const double wanted[] = {5, 20, 4, 4, 0, 20, 0.1 * length_m[0] + 0.2 * length_m[1] + 0.4 * length_m[2], 5e-3};
+    const double expected[] = {5, 20, 4, 4, 0, 20, 0.1 * length_m[0] + 0.2 * length_m[1] + 0.4 * length_m[2], 5e-3};
     for (int k = 0; k < N; k++) {
-        ck_assert_double_eq_tol(value[k], wanted[k], 1e-12);
+        ck_assert_double_eq_tol(value[k], expected[k], 1e-12);
         ck_assert_double_eq(item[k], wanted_item[k]);
     }
     ck_assert(isnan(value[N])); /* a net on rigid ground has no deflection */
@@ -391,7 +391,7 @@ START_TEST(a_margin_is_judged_by_its_error)
 {
     static const struct {
         double margin, error;
-        hf_verdict wanted;
+        hf_verdict expected;
     } table[] = {{2, 1, HF_VERDICT_PASS},      {1, 1, HF_VERDICT_PASS},           {0.999, 1, HF_VERDICT_UNDECIDED},
                  {0, 1, HF_VERDICT_UNDECIDED}, {-0.999, 1, HF_VERDICT_UNDECIDED}, {-1, 1, HF_VERDICT_UNDECIDED},
                  {-1.001, 1, HF_VERDICT_FAIL}, {0, 0, HF_VERDICT_PASS},           {-1e-300, 0, HF_VERDICT_FAIL},
@@ -410,7 +410,7 @@ START_TEST(a_margin_is_judged_by_its_error)
                    error[6] = {table[k].error, table[k].error, NAN, NAN, NAN, NAN};
             hf_requirement_verdict v = {0};
             hf_required_judge_nominal(&q, i, value, item, error, &v);
-            ck_assert_msg(v.verdict == table[k].wanted, "%zu: %s", k, hf_verdict_word[v.verdict]);
+            ck_assert_msg(v.verdict == table[k].expected, "%zu: %s", k, hf_verdict_word[v.verdict]);
             ck_assert_str_eq(v.worst_item, i ? "n3" : "c2");
             ck_assert_str_eq(v.worst_load_case, "nominal");
             ck_assert(isnan(v.relative_margin)); /* the bound is 0 */
@@ -553,12 +553,12 @@ START_TEST(quantile_and_yield_agree)
     }
     ck_assert_msg(below < rank && below + equal >= rank, "%ld below, %ld equal, rank %ld", below, equal, rank);
     if (!isinf(v[0].margin)) ck_assert_double_eq(v[0].margin, fmin(v[0].value - 5, 60 - v[0].value));
-    hf_verdict wanted = v[0].yield_low >= share   ? HF_VERDICT_PASS
+    hf_verdict expected = v[0].yield_low >= share   ? HF_VERDICT_PASS
                         : v[0].yield_high < share ? HF_VERDICT_FAIL
                                                   : HF_VERDICT_UNDECIDED;
     double low, high;
     hf_statistics_interval(n, met, &low, &high);
-    ck_assert(v[0].verdict == wanted && v[0].yield_low == low && v[0].yield_high == high);
+    ck_assert(v[0].verdict == expected && v[0].yield_low == low && v[0].yield_high == high);
     ck_assert_double_eq(v[1].margin, -7); /* the nominal net is judged elsewhere */
     ck_assert_int_eq(v[2].verdict, HF_VERDICT_NONE);
     ck_assert(v[2].yield < 1 && isinf(v[2].worst_margin) && isinf(v[2].worst_value));
