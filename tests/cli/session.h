@@ -282,3 +282,22 @@ static inline int generations_in_file(const char *path)
     const char *key = "\"generations\": ", *at = strstr(said.out, key);
     return at ? atoi(at + strlen(key)) : 0;
 }
+
+/* Draws the samples of a case and kills the program n_kill times, each time after more changes in the folder of its
+ * result. Then lets it finish, and checks that only the result is left. Returns its path. */
+static inline const char *sample_with_kills(const char *path_of_case, int n_kill)
+{
+    const char *folder = temp("folder"), *path = keep(formatted("%s/b.h5", folder));
+    const char *const argv[] = {hifdm_program(), "tolerance", path_of_case, "-o", path,
+                                "--quiet",       "--threads", "1",          NULL};
+    ck_assert_int_eq(mkdir(folder, 0777), 0);
+    for (int kills = 0; kills < n_kill; kills++) {
+        session s = start_session(folder, false, argv);
+        for (int k = 0; k < 4 + 3 * kills && wait_for_change(&s) >= 0 && !s.has_ended;)
+            k = s.n_change;
+        end_by(&s, SIGKILL);
+    }
+    HIFDM(0, "tolerance", path_of_case, "-o", path, "--quiet");
+    SHELL(0, "test \"$(ls \"$1\")\" = b.h5", folder);
+    return path;
+}

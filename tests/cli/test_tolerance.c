@@ -146,20 +146,9 @@ END_TEST
 /* Killed after a few changes in its folder, and continued: the same bits. */
 START_TEST(killed_runs_go_on)
 {
-    const char *c = built_case("random"), *whole = temp("a.h5"), *folder = temp("folder");
+    const char *c = built_case("random"), *whole = temp("a.h5");
     HIFDM(0, "tolerance", c, "-o", whole, "--quiet");
-    ck_assert_int_eq(mkdir(folder, 0777), 0);
-    const char *path = keep(formatted("%s/b.h5", folder));
-    const char *const argv[] = {hifdm_program(), "tolerance", c, "-o", path, "--quiet", "--threads", "1", NULL};
-    for (int kills = 0; kills < 4; kills++) {
-        session s = start_session(folder, false, argv);
-        for (int k = 0; k < 4 + 3 * kills && wait_for_change(&s) >= 0 && !s.has_ended;)
-            k = s.n_change;
-        end_by(&s, SIGKILL);
-    }
-    HIFDM(0, "tolerance", c, "-o", path, "--quiet");
-    demand_same(path, whole);
-    SHELL(0, "test \"$(ls \"$1\")\" = b.h5", folder);
+    demand_same(sample_with_kills(c, 4), whole);
 }
 END_TEST
 
