@@ -1,11 +1,12 @@
 /* built_nets - designs of random nets, the as-built nets that are made from them, and samples of these with errors.
- * Header only, like nets.h. */
+ * Also problems whose objectives or constraints are over as-built nets. Header only, like nets.h. */
 #pragma once
 
 #include "flexible.h"
 #include "laws.h"
 
 #include <hifdm/built_batch.h>
+#include <hifdm/problem.h>
 
 enum { MAX_BUILT_CABLE = 400 };
 
@@ -59,4 +60,36 @@ static inline void make_errors(void *context, long i, double *cut_m, double *EA_
     for (int row = e->model->n_free; row < e->model->n_node && support_displacement_m; row++)
         for (int c = 0; c < 3; c++)
             support_displacement_m[c * e->model->n_node + row] += rng_uniform(&rng, -e->support_m, e->support_m);
+}
+
+/* Opens a problem over as-built nets of cables that stretch: a parabolic cylinder of 3 x 3 modules on fixed supports,
+ * or the reflector on its truss. The errors of its cables are so small that none goes slack, because derivatives jump
+ * there. `more` ends with NULL and contains further settings. */
+static inline void open_built_problem(hf_problem *p, bool on_truss, const char *const *more)
+{
+    static const char *const common[] = {"form.stop=residual",
+                                         "form.residual_tolerance=1e-13",
+                                         "form.length_tolerance=1e-13",
+                                         "coupling.tof_m=1e-13",
+                                         "scene.EA_inner_N=1e4",
+                                         "scene.EA_boundary_N=2e4",
+                                         "cables=[{expansion_per_K: -2e-6, mass_kg_per_m: 0.01}]",
+                                         "tolerance.sigma_cut_m=2e-5",
+                                         "tolerance.sigma_EA_ratio=0.01",
+                                         "tolerance.sampling=random"};
+    static const char *const rigid[] = {"scene.parabolic_cylinder.modules=[3, 3]",
+                                        "scene.parabolic_cylinder.edge_tie_m=0.25",
+                                        "scene.parabolic_cylinder.pattern=triangle"};
+    const char *set[32], *path = on_truss ? "configs/chen2022-truss.yaml" : "configs/reflector.yaml";
+    size_t n = sizeof common / sizeof *common, n_rigid = on_truss ? 0 : sizeof rigid / sizeof *rigid;
+    hf_messages messages = {0};
+    memcpy(set, common, sizeof common);
+    memcpy(set + n, rigid, n_rigid * sizeof *rigid);
+    for (n += n_rigid; *more; more++) {
+        ck_assert_uint_lt(n, sizeof set / sizeof *set);
+        set[n++] = *more;
+    }
+    hf_status status = hf_problem_open(source_path(path), set, (int)n, 1, p, &messages);
+    ck_assert_msg(status == HF_OK, "%s", messages.text);
+    hf_messages_free(&messages);
 }

@@ -1,67 +1,37 @@
 /* Goals over nets as built of a design: their derivatives against differences, on fixed supports and on a truss, their
  * values against the states and samples of other modules, and what they must be where nothing differs. */
-#include "nets.h"
+#include "built_nets.h"
 
 #include "built/montecarlo.h"
 #include "run/load_case_stage.h"
 #include "run/problem_parts.h"
 #include "search/residuals.h"
-#include <hifdm/problem.h>
 
-enum { MAX_SET = 24, MAX_TRIED = 3 };
+enum { MAX_TRIED = 3 };
 #define MOVE_M 2.5e-4 /* of the node that a step moves most: differences of order 4 are off by some (MOVE_M/l)^4 */
 #define AGREEMENT 1e-7
 
-static const char truss_path[] = "configs/chen2022-truss.yaml", rigid_path[] = "configs/reflector.yaml";
-static const char *const rigid[] = {"scene.parabolic_cylinder.modules=[3, 3]",
-                                    "scene.parabolic_cylinder.edge_tie_m=0.25",
-                                    "scene.parabolic_cylinder.pattern=triangle"};
-
-/* Small errors: beyond them cables go slack, where derivatives jump. */
-static const char *const common[] = {
-    "form.stop=residual",
-    "form.residual_tolerance=1e-13",
-    "form.length_tolerance=1e-13",
-    "coupling.tof_m=1e-13",
-    "scene.EA_inner_N=1e4",
-    "scene.EA_boundary_N=2e4",
-    "cables=[{expansion_per_K: -2e-6, mass_kg_per_m: 0.01}]",
-    "nodes=[{mass_kg: 0.002}]",
-    ("load_cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}, {name: moved, "
-     "support_displacement_m: "
-     "[0, 0, 0.01], force_N: [0, 0, -0.01], role: inner}]"),
-    "tolerance.sigma_cut_m=2e-5",
-    "tolerance.sigma_cut_ratio=1e-6",
-    "tolerance.sigma_EA_ratio=0.01",
-    "tolerance.sigma_support_m=1e-5",
-    "tolerance.sampling=random",
-    "tolerance.seed=5",
-    "optimize.samples=6",
-    "surface.frequencies_Hz=[0.5e9]",
-    "surface.pattern.n_theta=3",
-};
-
-static const char *const on_a_truss[] = {
-    "truss.expansion_per_K=1e-6",
-    "tolerance.truss=[{part: bud, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 3}]"};
-
 static void open_problem(hf_problem *p, bool on_truss, const char *variables, const char *objectives)
 {
-    const char *set[MAX_SET];
-    int n = 0;
-    hf_messages messages = {0};
-    for (size_t i = 0; i < sizeof common / sizeof *common; i++)
-        set[n++] = common[i];
-    for (size_t i = 0; i < sizeof rigid / sizeof *rigid && !on_truss; i++)
-        set[n++] = rigid[i];
-    for (size_t i = 0; i < sizeof on_a_truss / sizeof *on_a_truss && on_truss; i++)
-        set[n++] = on_a_truss[i];
-    set[n++] = objectives;
+    const char *set[16] = {
+        "nodes=[{mass_kg: 0.002}]",
+        "load_cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}, {name: moved, "
+        "support_displacement_m: [0, 0, 0.01], force_N: [0, 0, -0.01], role: inner}]",
+        "tolerance.sigma_cut_ratio=1e-6",
+        "tolerance.sigma_support_m=1e-5",
+        "tolerance.seed=5",
+        "optimize.samples=6",
+        "surface.frequencies_Hz=[0.5e9]",
+        "surface.pattern.n_theta=3",
+        objectives,
+    };
+    int n = 9;
+    if (on_truss) set[n++] = "truss.expansion_per_K=1e-6";
+    if (on_truss)
+        set[n++] = "tolerance.truss=[{part: bud, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 3}]";
     if (variables) set[n++] = variables;
     if (variables) set[n++] = "optimize.symmetry=none";
-    hf_status status = hf_problem_open(source_path(on_truss ? truss_path : rigid_path), set, n, 1, p, &messages);
-    ck_assert_msg(status == HF_OK, "%s", messages.text);
-    hf_messages_free(&messages);
+    open_built_problem(p, on_truss, set);
 }
 
 /* ---- derivatives ---- */

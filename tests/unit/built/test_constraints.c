@@ -1,38 +1,14 @@
 /* Requirements as constraints of the search: their derivatives against differences, on fixed supports and on a truss,
  * the mean of the worst samples against the quantile, and the violation of a design. */
-#include "nets.h"
+#include "built_nets.h"
 
 #include "built/constraints.h"
 #include "run/problem_nets.h"
 #include "search/sensitivity.h"
-#include <hifdm/problem.h>
 
-enum { MAX_SET = 24, MAX_TRIED = 4, N_CONSTRAINT_MAX = 64 };
+enum { MAX_TRIED = 4, N_CONSTRAINT_MAX = 64 };
 #define MOVE_M 1e-5 /* of the node that a step moves most: differences of order 2 are off by some (MOVE_M/l)^2 */
 #define AGREEMENT 2e-5
-
-static const char truss_path[] = "configs/chen2022-truss.yaml", rigid_path[] = "configs/reflector.yaml";
-static const char *const rigid[] = {"scene.parabolic_cylinder.modules=[3, 3]",
-                                    "scene.parabolic_cylinder.edge_tie_m=0.25",
-                                    "scene.parabolic_cylinder.pattern=triangle"};
-static const char *const common[] = {
-    "form.stop=residual",
-    "form.residual_tolerance=1e-13",
-    "form.length_tolerance=1e-13",
-    "coupling.tof_m=1e-13",
-    "scene.EA_inner_N=1e4",
-    "scene.EA_boundary_N=2e4",
-    "cables=[{expansion_per_K: -2e-6, mass_kg_per_m: 0.01}]",
-    ("load_cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}]"),
-    "tolerance.sigma_cut_m=2e-5",
-    "tolerance.sigma_EA_ratio=0.01",
-    "tolerance.sampling=random",
-    "tolerance.samples=400",
-    "optimize.samples=20",
-    "optimize.symmetry=none",
-    "optimize.variables=[{set: inner, vary: force_density, range: 50 %, link: scale}, "
-    "{set: boundary, vary: force_density, range: 20 %}]",
-};
 
 static const char of_design[] =
     "requirements=[{figure: psi, at_most: 1e-4}, {figure: surface, feed: fixed, at_most: 1e-4, load_case: all}, "
@@ -47,19 +23,19 @@ static const char of_samples[] = "requirements=[{figure: psi, at_most: 1e-4, sha
 
 static void open_problem(hf_problem *p, bool on_truss, const char *requirements)
 {
-    const char *set[MAX_SET];
-    int n = 0;
-    hf_messages messages = {0};
-    for (size_t i = 0; i < sizeof common / sizeof *common; i++)
-        set[n++] = common[i];
-    for (size_t i = 0; i < sizeof rigid / sizeof *rigid && !on_truss; i++)
-        set[n++] = rigid[i];
-    if (on_truss) set[n++] = "truss.expansion_per_K=1e-6";
-    if (on_truss) set[n++] = "surface.frequencies_Hz=[1e9]";
-    set[n++] = requirements;
-    hf_status status = hf_problem_open(source_path(on_truss ? truss_path : rigid_path), set, n, 1, p, &messages);
-    ck_assert_msg(status == HF_OK, "%s", messages.text);
-    hf_messages_free(&messages);
+    const char *set[] = {
+        "load_cases=[{name: cold, temperature_K: -20, part: net}, {name: up, gravity_m_per_s2: 9.81}]",
+        "tolerance.samples=400",
+        "optimize.samples=20",
+        "optimize.symmetry=none",
+        "optimize.variables=[{set: inner, vary: force_density, range: 50 %, link: scale}, "
+        "{set: boundary, vary: force_density, range: 20 %}]",
+        requirements,
+        on_truss ? "truss.expansion_per_K=1e-6" : NULL, /* the list ends here without a truss */
+        "surface.frequencies_Hz=[1e9]",
+        NULL,
+    };
+    open_built_problem(p, on_truss, set);
 }
 
 /* ---- derivatives ---- */

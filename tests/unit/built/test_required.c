@@ -62,7 +62,7 @@ START_TEST(columns_are_measured_once)
         const char *name;
         unsigned nominal, many;
     } expected[] = {{"tension_min", 1, 4},  {"tension_max", 1, 0},      {"tension_max_inner", 0, 7},
-                  {"slack_cables", 2, 0}, {"facets_refocused", 7, 0}, {"facets_fixed", 0, 2}};
+                    {"slack_cables", 2, 0}, {"facets_refocused", 7, 0}, {"facets_fixed", 0, 2}};
     ck_assert_int_eq(q.n_column, 6);
     for (int k = 0; k < q.n_column; k++) {
         ck_assert_str_eq(hf_required_column_name(&q.column[k], name), expected[k].name);
@@ -554,8 +554,8 @@ START_TEST(quantile_and_yield_agree)
     ck_assert_msg(below < rank && below + equal >= rank, "%ld below, %ld equal, rank %ld", below, equal, rank);
     if (!isinf(v[0].margin)) ck_assert_double_eq(v[0].margin, fmin(v[0].value - 5, 60 - v[0].value));
     hf_verdict expected = v[0].yield_low >= share   ? HF_VERDICT_PASS
-                        : v[0].yield_high < share ? HF_VERDICT_FAIL
-                                                  : HF_VERDICT_UNDECIDED;
+                          : v[0].yield_high < share ? HF_VERDICT_FAIL
+                                                    : HF_VERDICT_UNDECIDED;
     double low, high;
     hf_statistics_interval(n, met, &low, &high);
     ck_assert(v[0].verdict == expected && v[0].yield_low == low && v[0].yield_high == high);
