@@ -32,7 +32,12 @@ HF_API_BEGIN
 /* Figures of the net. */
 #define HF_SUMMARY_FORM_LIST(X)                                                                                        \
     X(int, n_node, INT, .description = "nodes")                                                                        \
-    X(int, n_free, INT, .description = "nodes that are no supports")                                                   \
+    X(int, n_free, INT, .json = 1, .description = "nodes that are no supports")                                        \
+    X(int, n_inner_node, INT, .json = 1, .description = "free nodes that psi counts; 0: an earlier version")           \
+    X(int, n_uncounted, INT, .json = 1,                                                                                \
+      .description = "free nodes whose positions no objective fixes in all directions; 0: nothing was optimised")      \
+    X(double, uncounted_move_m, REAL, .json = 1,                                                                       \
+      .description = "maximum displacement of these nodes since form-finding that no objective counts, in the result") \
     X(int, n_cable, INT, .description = "cables")                                                                      \
     X(int, n_variable, INT, .description = "design variables")                                                         \
     X(int, half_bandwidth, INT, .description = "of the force density matrix")                                          \

@@ -115,6 +115,17 @@ static bool minimises_psi(const hf_summary *s)
     return false;
 }
 
+/* Writes "11 of 59 free nodes" if psi does not count all of them, else "". Files of earlier versions do not contain the
+ * number of inner nodes. Returns text. */
+static const char *counted_text(const hf_summary *s, const hf_form_result *r, char text[64])
+{
+    *text = '\0';
+    if (s->n_inner_node > 0 && s->n_inner_node < s->n_free)
+        snprintf(text, 64, "%d of %d free nodes%s", s->n_inner_node, s->n_free,
+                 r->n_loose ? ", without loose ones" : "");
+    return text;
+}
+
 /* Prints the objectives of the form-finding and of the result, in their units: "facets 1.7436 -> 1.4720 mm". */
 static void print_objectives_gained(const hf_summary *s, const hf_form_result *r, FILE *f)
 {
@@ -127,9 +138,13 @@ static void print_objectives_gained(const hf_summary *s, const hf_form_result *r
         print_objective_unit(unit, f);
     }
     if (s->objectives.n > OBJECTIVES_SHOWN) fprintf(f, " and %d more", s->objectives.n - OBJECTIVES_SHOWN);
-    fputs(" (form-finding -> result)", f);
-    if (minimises_psi(s)) return;
-    fputs("; psi ", f);
+    char counted[64];
+    bool is_part = *counted_text(s, r, counted) != '\0';
+    if (minimises_psi(s)) {
+        fprintf(f, " (form-finding -> result%s%s)", is_part ? "; psi of " : "", counted);
+        return;
+    }
+    fprintf(f, " (form-finding -> result); psi %s%s%s", is_part ? "of " : "", counted, is_part ? " " : "");
     print_objective_value(s->stage[HF_STAGE_FORM].result.psi_m, "m", f);
     fputs(" -> ", f);
     print_objective_value(r->psi_m, "m", f);
@@ -192,8 +207,9 @@ static void print_answer(const hf_summary *s, bool has_error, FILE *f)
         fputs("no psi: no taut cable holds an inner node", f);
         return;
     } else {
-        fprintf(f, "psi %s mm (RMS position error of the inner nodes)%s", hf_print_decimals(r->psi_m * 1e3).text,
-                stage == HF_STAGE_REFINE ? " after refinement" : "");
+        char counted[64];
+        fprintf(f, "psi %s mm (RMS position error of %s)%s", hf_print_decimals(r->psi_m * 1e3).text,
+                *counted_text(s, r, counted) ? counted : "the inner nodes", stage == HF_STAGE_REFINE ? " after refinement" : "");
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);
@@ -601,6 +617,22 @@ static void print_end(const hf_summary *s, const char *path, hf_print_style styl
                       s->case_path, path);
 }
 
+/* Prints nodes, cables and design variables, and how far the optimisation moved nodes that it does not count. */
+static void print_net(const hf_summary *s, hf_stage result, FILE *f)
+{
+    fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
+    if (s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front)
+        fprintf(f, ", %d design variables", s->n_variable);
+    if (s->has_own_tensions)
+        fputs("; each cable has a law of its own", f);
+    else
+        fprintf(f, "; pretension %g N", s->pretension_N);
+    if (s->n_uncounted > 0 && result != HF_STAGE_FORM && result != HF_N_STAGE && isfinite(s->uncounted_move_m))
+        fprintf(f, "; the optimisation moved uncounted nodes by up to %.4g mm (%d nodes)", s->uncounted_move_m * 1e3,
+                s->n_uncounted);
+    fputc('\n', f);
+}
+
 void hf_print_summary(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
 {
     hf_stage result = hf_store_result_stage(s);
@@ -609,13 +641,7 @@ void hf_print_summary(const hf_summary *s, const char *path, hf_print_style styl
     print_answer(s, style.has_error, f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
-    fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
-    if (s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front)
-        fprintf(f, ", %d design variables", s->n_variable);
-    if (s->has_own_tensions)
-        fputs("; each cable has a law of its own\n", f);
-    else
-        fprintf(f, "; pretension %g N\n", s->pretension_N);
+    print_net(s, result, f);
     if (s->has_truss)
         fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
                 s->truss.mass_kg);

@@ -859,15 +859,19 @@ static void tell_far(const hf_problem *p, const hf_places *form, const far_nodes
                    form->cable_m[within->row] * 1e3);
 }
 
-void hf_result_doubt_uncounted(const hf_problem *p, const hf_places *form, const hf_workspace *shape,
+void hf_result_doubt_uncounted(const hf_problem *p, const hf_places *form, const hf_workspace *shape, hf_summary *s,
                                hf_messages *messages)
 {
     far_nodes far[HF_COUNTED + 1] = {0};
     double counted_m, open_m, most_m = 0;
     if (!form->block || !shape) return;
+    s->n_uncounted = 0;
+    s->uncounted_move_m = 0;
     for (int row = 0; row < p->model.n_free; row++) {
         split_move(p, form, shape, row, &counted_m, &open_m);
         most_m = fmax(most_m, counted_m);
+        s->n_uncounted += form->counted[row] != HF_COUNTED;
+        if (!shape->loose[row]) s->uncounted_move_m = fmax(s->uncounted_move_m, open_m);
     }
     for (int row = 0; row < p->model.n_free; row++) {
         far_nodes *to = &far[form->counted[row]];

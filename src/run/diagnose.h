@@ -4,6 +4,7 @@
 #include <hifdm/carrier.h>
 #include <hifdm/population.h>
 #include <hifdm/problem.h>
+#include <hifdm/summary.h>
 
 /* ---- form-finding ---- */
 
@@ -71,9 +72,10 @@ typedef struct {
 hf_status hf_places_keep(const hf_problem *problem, hf_places *places);
 void hf_places_free(hf_places *places);
 
-/* Warns about the free node with the maximum displacement from these positions that no objective counts. It must exceed
- * a quarter of the mean length of the node's cables, and the counted displacement of every node. psi counts inner
- * nodes, an objective of length the ends of its cables, and objectives of the surface the distance of their nodes from
- * it. Displacements within the surface have a warning of their own. */
+/* Sets n_uncounted and uncounted_move_m of the summary, and warns about the free node with the maximum displacement
+ * from these positions that no objective counts. For the warning, the displacement must exceed a quarter of the mean
+ * length of the node's cables, and the counted displacement of every node. psi counts inner nodes, an objective of
+ * length the ends of its cables, and objectives of the surface the distance of their nodes from it. Displacements
+ * within the surface have a warning of their own. */
 void hf_result_doubt_uncounted(const hf_problem *problem, const hf_places *form, const hf_workspace *shape,
-                               hf_messages *messages);
+                               hf_summary *summary, hf_messages *messages);

@@ -245,6 +245,8 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->seed = settings->optimize.seed;
     s->n_node = model->n_node;
     s->n_free = model->n_free;
+    s->n_inner_node = model->n_inner_node;
+    s->uncounted_move_m = (double)NAN;
     s->n_cable = model->n_cable;
     s->n_variable = model->n_variable;
     s->search.n_leader = model->n_leader;

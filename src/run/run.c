@@ -216,7 +216,7 @@ static hf_status finish(hf_run *r, hf_summary *s, hf_status status, hf_messages 
     const hf_problem *p = &r->problem;
     hf_result_doubt_truss(p, &r->truss, r->shape, messages);
     hf_result_doubt_strain(p, r->shape, messages);
-    hf_result_doubt_uncounted(p, &r->places, r->shape, messages);
+    hf_result_doubt_uncounted(p, &r->places, r->shape, s, messages);
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &p->carrier, &r->truss, messages));
     keep_messages(messages, s->warnings);
     s->finished = true;

@@ -145,6 +145,7 @@ static void write_stage(const hf_summary *s, hf_stage stage, hf_json *j)
         hf_json_text(j, "stop_reason", hf_stop_reason_word((int)of->result.stop_reason));
     else
         hf_json_text(j, "algorithm", hf_summary_algorithm(s, stage));
+    if (stage == HF_STAGE_FORM) write_part(s, HF_LAYOUT_FORM, j);
     if (stage == HF_STAGE_SEARCH) write_part(s, HF_LAYOUT_SEARCH, j);
     if (stage == HF_STAGE_REFINE) write_part(s, HF_LAYOUT_REFINE, j);
     hf_json_number(j, "wall_s", of->wall_s);
