@@ -6,6 +6,7 @@
 #include "base/path.h"
 #include "out/cut.h"
 #include "out/print_summary.h"
+#include "out/report_required.h"
 #include "out/words.h"
 #include "surface/facet_mesh.h"
 #include "store/ledger.h"
@@ -65,6 +66,7 @@ typedef struct page {
     hf_facet_errors facet_error[N_SHAPE];                /* errors of each shape, in facet_block */
     void *facet_block;
     hf_pattern_table pattern[HF_N_STAGE]; /* without angles: empty */
+    hf_report_curves required;            /* samples of the figures that requirements bound */
     char provenance[PROVENANCE_SIZE];
     hf_texts case_text, overrides; /* one text each */
     const struct page *other;      /* the result for comparison, or NULL */
@@ -416,6 +418,7 @@ static void write_data(const void *context, FILE *f)
     bool has_variables = s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front;
     fprintf(f, ",\"n_free\":%d,\"n_variable\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_variable : 0);
     hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
+    hf_report_curves_write(s, &p->required, f);
     write_figures(&j);
     write_objective_units(s, &j);
     write_words(&j);
@@ -505,6 +508,7 @@ static hf_status read_page(page *p, hf_messages *messages)
     HF_TRY(hf_store_read_texts(p->path, "/case/overrides", &p->overrides, messages));
     HF_TRY(read_shapes(p, messages));
     HF_TRY(read_load_cases(p, messages));
+    HF_TRY(hf_report_curves_read(p->path, &p->summary, &p->required, messages));
     if (map_facets(p) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", p->path);
     return check_truss(p, messages);
 }
@@ -522,6 +526,7 @@ static void free_page(page *p)
     for (int i = 0; i < N_SERIES; i++)
         hf_series_free(&p->series[i]);
     hf_facets_free(&p->facets);
+    hf_report_curves_free(&p->required);
     hf_arena_free_block(p->facet_block);
     hf_texts_free(&p->case_text);
     hf_texts_free(&p->overrides);

@@ -156,6 +156,28 @@ export const pages = [
     slack: 0,
   },
   {
+    name: "requirements", // more rows than are shown at first; one is only reported, two are of all load cases
+    look: true,
+    text: cylinder(
+      [4, 5],
+      "cables:\n  - {expansion_per_K: -2e-6}\nload_cases:\n  - {name: cold, temperature_K: -5}\n" +
+        "tolerance: {sigma_cut_m: 1e-4, samples: 600, seed: 1}\nrequirements:\n" +
+        "  - {figure: psi, at_most: 0.0783, load_case: nominal, share: 0.9}\n" +
+        "  - {figure: psi, at_most: 0.0782, load_case: cold, share: 0.9}\n" +
+        "  - {figure: psi, at_most: 0.08, load_case: all, share: 0.95}\n" +
+        "  - {figure: tension, set: inner, within: [1, 60], load_case: all, share: 0.95}\n" +
+        "  - {figure: tension, set: inner, at_most: 90}\n" +
+        "  - {figure: tension, set: boundary, at_most: 900}\n" +
+        "  - {figure: ratio, set: boundary, at_most: 90, load_case: cold}\n" +
+        "  - {figure: slack_cables, at_most: 0, load_case: all, share: 0.95}\n" +
+        "  - {figure: tension, set: boundary, at_most: 45, share: 0}\n",
+    ).replace("scene:", "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5"),
+    sections: [
+      ...["requirements", "net", "cables", "map", "tensions", "load-cases", "distributions", "tolerance", "summary"],
+      ...["form-finding", "provenance"],
+    ],
+  },
+  {
     name: "compare",
     look: true,
     source: "configs/chen2022.yaml",

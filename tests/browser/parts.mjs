@@ -3,9 +3,11 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { csv, number, picture, same, settle, tip } from "./see.mjs";
 
-// Nodes whose deviations are rounding have one colour, and the page says so; another shape of the page has a scale. Of
-// the two nets in space only the front counts.
-export async function checkRounding(tab) {
+// Nodes whose deviations are rounding have one colour, and the page says so, and how far those are that psi does not
+// count; another shape of the page has a scale. Of the two nets in space only the front counts.
+export async function checkRounding(tab, made) {
+  const away = ({ x_m, y_m, z_m, x0_m, y0_m, z0_m }) => 1e3 * Math.hypot(x_m - x0_m, y_m - y0_m, z_m - z0_m),
+    outer_mm = Math.max(0, ...made.nodes.filter(({ role }) => role !== "inner").map(away));
   for (const name of ["rear", "rear edge", "tie"])
     await tab.locator("#families").getByLabel(name, { exact: true }).uncheck();
   for (const [part, canvas] of [
@@ -18,7 +20,10 @@ export async function checkRounding(tab) {
         if (part === "#net") await tab.locator(part).getByLabel("deviation", { exact: true }).check();
         return (await picture(tab, canvas)).colours;
       };
-    const one = await colours("refine");
+    const one = await colours("refine"),
+      told = (await bar.innerText()).match(/^Nodes that ψ does not count are up to (\S+) mm away/);
+    assert.equal(await bar.locator("canvas").count(), 0, "a scale of rounding");
+    if (part === "#net" && outer_mm >= 1e-6) same(number(told[1]), outer_mm, 4);
     assert.match(await bar.innerText(), /within 1 nm of their target positions.* one neutral colour\.$/);
     const many = await colours("form");
     assert.ok(!(await bar.innerText()).includes("1 nm"));
@@ -126,6 +131,56 @@ export async function checkWords(tab, made) {
   }
   assert.ok(!words.some(([word]) => word === "facet_half_path_rms_m"), "a figure that is not there is explained");
   await tab.locator("#summary details summary").click();
+}
+
+// The rows of requirements are those of the file, the failed and the tightest first and the others behind a button;
+// the distribution function of a row reaches its yield at its bound.
+export async function checkRequirements(tab, made) {
+  const { requirements, verdict } = made.summary,
+    rank = ["fail", "undecided", "pass", "none"],
+    margin = (row) => row.relative_margin ?? Infinity,
+    sorted = requirements
+      .slice()
+      .sort((a, b) => rank.indexOf(a.verdict) - rank.indexOf(b.verdict) || margin(a) - margin(b) || 0),
+    open = sorted.filter((row) => rank.indexOf(row.verdict) < 2).length;
+  assert.ok(open > 0 && sorted.length > open + 5 && sorted.at(-1).verdict === "none");
+  assert.equal(await tab.locator("#requirements h2").textContent(), `Verdict: ${verdict}`);
+  assert.equal(await tab.locator("main > :not(noscript)").first().getAttribute("id"), "requirements", "the verdict comes first");
+  const rows = tab.locator("#requirements tbody tr");
+  assert.equal(await rows.count(), open + 5);
+  await tab.locator("#requirements .tools button").click();
+  assert.equal(await rows.count(), sorted.length);
+  const cells = await rows.evaluateAll((all) => all.map((row) => [...row.children].map((c) => c.textContent)));
+  sorted.forEach((row, k) => {
+    const [name, word, value, , size, relative, met] = cells[k],
+      times = row.unit === "m" ? 1e3 : 1;
+    assert.ok(name.startsWith(row.figure) && word === (row.verdict === "none" ? "–" : row.verdict), cells[k]);
+    same(number(value), times * row.value, 4);
+    same(number(size), times * row.margin, 4);
+    if (row.relative_margin !== null) same(number(relative), 100 * row.relative_margin, 3);
+    if (row.yield !== null) same(number(met), 100 * row.yield, 4);
+  });
+  await tab.locator("#requirements .tools button").click();
+  const at = await tab.evaluate(() =>
+    data.required.map(({ curves }, i) =>
+      curves.map((c) => [c.load_case, shareBelow(c, summary.requirements[i].at_most), c.value.length]),
+    ),
+  );
+  requirements.forEach((row, i) => {
+    const states = row.load_case === "all" ? 2 : 1,
+      ends = row.figure === "tension" && row.at_least !== null && row.at_most !== null ? 2 : 1;
+    assert.equal(at[i].length, row.share === null ? 0 : states * ends, `curves of ${row.figure}`);
+    if (row.share === null || states * ends > 1 || row.at_most === null) return;
+    assert.ok(at[i][0][2] === 400 && Math.abs(at[i][0][1] - 100 * row.yield) < 100 / 400, `${at[i]}: ${row.yield}`);
+  });
+  assert.equal(await tab.locator("#distributions .chart").count(), 4);
+  await tab.locator("#distributions button").click();
+  const shown = await tab.locator("#distributions .chart h3").allTextContents();
+  assert.deepEqual(
+    shown.map((name) => name.split(/[ ,]/)[0]),
+    sorted.filter((row) => row.share !== null).map((row) => row.figure),
+  );
+  await tab.reload();
 }
 
 // Bars as high as the samples are many, a line for each figure at its place, and the cables of the file.

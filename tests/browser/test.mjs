@@ -11,7 +11,15 @@ import { checkHostile } from "./hostile.mjs";
 import { checkFluid } from "./large.mjs";
 import { checkLook, inspect } from "./look.mjs";
 import { pages } from "./pages.mjs";
-import { checkAdjust, checkFront, checkPattern, checkRounding, checkTolerance, checkWords } from "./parts.mjs";
+import {
+  checkAdjust,
+  checkFront,
+  checkPattern,
+  checkRequirements,
+  checkRounding,
+  checkTolerance,
+  checkWords,
+} from "./parts.mjs";
 import { checkFacets, checkHover, checkMap, checkNet } from "./pictures.mjs";
 import { changes, csv, DATA, picture, settle } from "./see.mjs";
 import { checkPoints, checkSurfaceOfStudy, checkVerdicts } from "./study.mjs";
@@ -134,11 +142,11 @@ async function checkMedia(tab, pictures) {
     assert.notEqual(seen.print.sums[k], seen.dark.sums[k], `${name} is printed in the dark`);
   });
   assert.ok(seen.light.tools && !seen.print.tools, "controls on paper");
-  const tools = tab.locator(".tools").first(),
+  const tools = tab.locator(".tools:has([type=radio])").first(),
     labels = await tools.locator("label:has([type=radio]:checked)").allTextContents(),
-    [told] = seen.print.chosen;
-  const isTold = labels.every((label) => told.includes(`: ${label}`)); // a study of one axis has nothing to choose
-  assert.ok(isTold && (labels.length || !pictures.length), told);
+    told = seen.print.chosen,
+    has = (text) => labels.every((label) => text.includes(`: ${label}`)); // a study of one axis has nothing to choose
+  assert.ok(labels.length ? told.some(has) : !pictures.length, told.join("; "));
   await tab.emulateMedia({ colorScheme: "light", media: "screen" });
   assert.equal(await tab.locator(".paper:visible").count(), 0, "on a screen the controls say it");
   await tab.setViewportSize({ width: 360, height: 700 });
@@ -195,13 +203,14 @@ async function test(browser, page) {
     else await checkCables(tab, made);
     await checkHover(tab, page, made);
     if (page.slack) assert.ok(endless.includes("Tension ratio, boundary cables"), "an infinite ratio is not shown");
-    if (page.rounding) await checkRounding(tab);
+    if (page.rounding) await checkRounding(tab, made);
     else await checkMap(tab, made);
     if (page.facets) await checkFacets(tab, page, made);
     if (page.name === "front") await checkFront(tab, made);
     if (page.measured) await checkAdjust(tab, made, changes);
     if (page.pattern) await checkPattern(tab, page, made);
-    if (made.summary.tolerance && !page.measured) await checkTolerance(tab, made);
+    if (made.summary.requirements) await checkRequirements(tab, made);
+    else if (made.summary.tolerance && !page.measured) await checkTolerance(tab, made);
     await checkUnknownFigure(browser, made, folder);
   }
   if (page.study || page.other || page.slack !== undefined) await checkHostile(browser, made, folder);

@@ -13,6 +13,7 @@ function unpack(type, text) {
 // the id of every cable.
 function revived(value) {
   if (value === "Infinity") return Infinity;
+  if (value === "-Infinity") return -Infinity;
   if (value === null || typeof value !== "object") return value;
   if (Array.isArray(value)) {
     for (let k = 0; k < value.length; k++) if (typeof value[k] !== "number") value[k] = revived(value[k]);
@@ -58,7 +59,7 @@ const minus = (text) => text.replace(/^-/, "−");
 
 // Formats a number with so many significant digits; tiny and huge ones as 1.2×10⁻⁷.
 function fmt(value, digits = 4) {
-  if (value === Infinity) return "∞";
+  if (value === Infinity || value === -Infinity) return value > 0 ? "∞" : "−∞";
   if (typeof value !== "number" || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
@@ -169,6 +170,20 @@ function innerMost(values) {
     if (size > inner && isInner(i)) inner = size;
   }
   return inner >= 0 ? inner : any >= 0 ? any : 1;
+}
+
+// Returns " of 11 of 59 free nodes" if psi does not count all of them. Files of earlier versions do not say so.
+function countedText() {
+  const n = summary.form.n_inner_node;
+  return n && n < data.n_free ? ` of ${fmtCount(n)} of ${fmtCount(data.n_free)} free nodes` : "";
+}
+
+// Returns the largest deviation of a node that is not inner, or 0. on: the nodes that are looked at
+function outerMost(values, on) {
+  let outer = 0;
+  for (let i = 0; i < values.length; i++)
+    if (!isInner(i) && (!on || on[i])) outer = Math.max(outer, Math.abs(values[i]));
+  return outer;
 }
 
 function range(values) {

@@ -99,7 +99,7 @@ function writeFigures() {
   // Other objectives than ψ may raise ψ.
   const initial = summary.search && !summary.form.objectives && summary.search.initial_psi_m,
     list = [];
-  list.push(figure(`surface error ψ (${resultShape.name})`, roundedMm(resultNumbers.psi_m), "mm"));
+  list.push(figure(`surface error ψ${countedText()} (${resultShape.name})`, roundedMm(resultNumbers.psi_m), "mm"));
   if (resultStage !== "form") {
     list.push(figure("ψ after form-finding", roundedMm(summary.form.psi_m), "mm"));
     const below = 100 * (1 - resultNumbers.psi_m / initial),
@@ -113,6 +113,8 @@ function writeFigures() {
     figure("tension ratio, boundary cables", fmtRatio(resultNumbers.boundary_tension_ratio)),
     figure("slack cables", fmtCount(resultNumbers.slack_cables)),
   );
+  if (resultStage !== "form" && summary.form.n_uncounted)
+    list.push(figure("largest move of an uncounted node", roundedMm(summary.form.uncounted_move_m), "mm"));
   main.append(el("dl", { class: "figures" }, list));
 }
 
@@ -347,6 +349,7 @@ if (data.study) {
   writeStudy(data.study);
 } else {
   writeHead();
+  writeRequirements();
   writeMessages();
   writeAnswer();
   writeFigures();
@@ -357,6 +360,7 @@ if (data.study) {
   writeMap();
   writeTensions();
   writeLoadCases();
+  writeDistributions();
   writeTolerance();
   writeFront();
   writePattern();

@@ -219,7 +219,8 @@ function aperture({ canvas, tip, bar }) {
     paintNet(c);
     if (!faces.length && !ofFacets()) paintNodes(c);
     paintAxes(c, width, height, toX, toY);
-    if (isRounding()) return bar.replaceChildren(roundingNote());
+    if (isRounding())
+      return bar.replaceChildren(roundingNote(ofFacets() ? 0 : outerMost(state.shape.distance_mm, on)));
     drawBar(
       bar,
       colours(),

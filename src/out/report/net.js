@@ -76,7 +76,6 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     for (let k = 0; k < at.length; k++) at[k] = from[k] + (d ? state.scale * d[k] : 0);
   }
 
-  const isNone = (v) => state.colour === "deviation" && v < RESOLVED_MM;
   const isRounding = () => state.colour === "deviation" && innerMost(state.shape.distance_mm) < RESOLVED_MM;
   // Returns the value that the colour of a cable shows. limits() returns the range of these values.
   function valueOf(e) {
@@ -86,8 +85,8 @@ function netView({ canvas, tip, bar, scaleLabel }) {
   }
   function limits() {
     if (state.colour === "tension")
-      return range(state.shape.tension_N.filter((_, e) => batchOf[e] >= 0)) || [0, 1];
-    return [0, isRounding() ? range(state.shape.distance_mm)[1] : innerMost(state.shape.distance_mm)];
+      return widened(range(state.shape.tension_N.filter((_, e) => batchOf[e] >= 0)) || [0, 1]);
+    return [0, innerMost(state.shape.distance_mm)];
   }
 
   // Returns the batches for the present colours, and a function from a cable to its batch.
@@ -105,10 +104,11 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     if (state.colour === "adjustments")
       return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (adjustmentOf.has(e) ? 1 : 0)];
     if (state.colour === "slack") return [[line(ink.ghost), line(ink.alarm, 3.2)], (e) => (shape.isSlack(e) ? 1 : 0)];
-    const limit = limits();
+    const limit = limits(),
+      least = state.colour !== "deviation" ? -Infinity : isRounding() ? Infinity : RESOLVED_MM; // below: no colour
     return [
       [line(ink.soft), ...levels(sequential).map((colour) => line(rgb(colour)))],
-      (e) => (isNone(valueOf(e)) ? 0 : 1 + levelOf(valueOf(e), limit)),
+      (e) => (valueOf(e) < least ? 0 : 1 + levelOf(valueOf(e), limit)),
     ];
   }
 
@@ -393,10 +393,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       );
     if (state.colour === "tension") drawBar(bar, sequential, limits(), "tension (N)");
     else drawBar(bar, sequential, limits(), "distance to target position (mm)", range(state.shape.distance_mm));
-    if (isRounding()) {
-      if (limits()[1] < RESOLVED_MM) bar.replaceChildren();
-      bar.append(roundingNote());
-    }
+    if (isRounding()) bar.replaceChildren(roundingNote(outerMost(state.shape.distance_mm)));
   }
 
   // ---- the object under the pointer, and its values ----

@@ -62,13 +62,25 @@ function levelOf(value, [low, high]) {
 // Formats millimetres, or dB, for which the same limit of rounding is used.
 const rounded = (v, digits) => (Math.abs(v) < RESOLVED_MM ? `< ${power(-6)}` : digitsOf(v, digits));
 const roundedMm = (m) => (typeof m === "number" ? rounded(1e3 * m, 5) : "–");
-const roundingNote = () =>
+// outer_mm: largest deviation of a node that psi does not count
+const roundingNote = (outer_mm) =>
   el(
     "span",
     {},
-    "All inner nodes are within 1 nm of their target positions. Such deviations are rounding errors, so all nodes " +
+    (outer_mm >= RESOLVED_MM
+      ? `Nodes that ψ does not count are up to ${fmt(outer_mm)} mm away from their target positions. `
+      : "") +
+      "All inner nodes are within 1 nm of their target positions. Such deviations are rounding errors, so all nodes " +
       "have one neutral colour.",
   );
+
+// Returns a range of colours for values low..high that hardly vary. It is at least SPREAD times the largest size, so
+// that small differences do not look like large ones.
+const SPREAD = 0.05;
+function widened([low, high]) {
+  const room = SPREAD * Math.max(Math.abs(low), Math.abs(high)) - (high - low);
+  return room > 0 ? [low - room / 2, high + room / 2] : [low, high];
+}
 
 // Draws the colour bar of a picture. Values outside low..high, from `lowest` to `highest`, have the colours of its
 // ends.

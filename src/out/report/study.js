@@ -297,7 +297,7 @@ function heatMap(study, figure, axis, other, stage) {
   if (!all) return null;
   // Margin 0 is the middle of the colours. They end at the largest margin that passes, so that it differs from 0.
   const most = all[1] > 0 ? all[1] : Math.abs(all[0]) || 1,
-    [scale, low, high] = isMargin ? [(t) => diverging(1 - t), -most, most] : [sequential, ...all];
+    [scale, low, high] = isMargin ? [(t) => diverging(1 - t), -most, most] : [sequential, ...widened(all)];
   const label = (a, value) => (a.isNumber ? fmt(value, 4) : String(value));
   const bar = el("div", { class: "bar" });
   const decimals = isMargin ? 1 : Math.min(9, Math.max(0, 2 - Math.floor(Math.log10(all[1] - all[0] || 1))));

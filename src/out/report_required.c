@@ -1,0 +1,118 @@
+/* Implements report_required.h. */
+#include "out/report_required.h"
+
+#include "base/json.h"
+#include "built/required.h"
+#include "store/store_series.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define VALUES_MAX 400 /* values of a curve on the page, about what a screen can show */
+
+static int compare_values(const void *a, const void *b)
+{
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+/* Sorts the samples, and keeps evenly spaced ones, the first and the last among them. */
+static hf_status keep_values(const hf_series *samples, hf_report_curve *to)
+{
+    int n = 0;
+    for (int i = 0; i < samples->n; i++) /* a sample without a shape has no value */
+        if (isfinite(samples->value[i])) samples->value[n++] = samples->value[i];
+    qsort(samples->value, (size_t)n, sizeof(double), compare_values);
+    to->n = samples->n;
+    to->n_value = n < VALUES_MAX ? n : VALUES_MAX;
+    to->value = calloc(2 * (size_t)to->n_value + 1, sizeof(double));
+    if (!to->value) return HF_NO_MEMORY;
+    to->share = to->value + to->n_value;
+    for (int k = 0; k < to->n_value; k++) {
+        int i = to->n_value == n ? k : (int)((long)k * (n - 1) / (VALUES_MAX - 1));
+        to->value[k] = samples->value[i];
+        to->share[k] = (i + 1.0) / samples->n;
+    }
+    return HF_OK;
+}
+
+static hf_status read_curve(const char *path, hf_report_curve c, const hf_requirement_settings *row,
+                            hf_report_curves *curves, hf_messages *messages)
+{
+    const hf_required_column column = {
+        .figure = row->figure, .is_minimum = c.is_low, .feed = row->feed, .set = row->set};
+    char name[HF_REQUIRED_NAME_SIZE], place[HF_REQUIRED_NAME_SIZE + HF_SET_NAME_SIZE + 32];
+    hf_series samples = {0};
+    snprintf(place, sizeof place, "/tolerance/load_case/%s/%s", c.load_case, hf_required_column_name(&column, name));
+    hf_status status = hf_store_read_series(path, place, 1, &samples, messages);
+    if (status == HF_OK && samples.n > 0) {
+        status = keep_values(&samples, &c);
+        if (status == HF_OK) curves->curve[curves->n++] = c;
+        if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
+    }
+    hf_series_free(&samples);
+    return status;
+}
+
+hf_status hf_report_curves_read(const char *path, const hf_summary *s, hf_report_curves *curves, hf_messages *messages)
+{
+    *curves = (hf_report_curves){0};
+    if (s->n_requirement == 0) return HF_OK;
+    curves->curve = calloc(2 * (size_t)s->n_requirement * (size_t)(1 + s->n_load_case), sizeof *curves->curve);
+    if (!curves->curve) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    for (int i = 0; i < s->n_requirement; i++) {
+        const hf_requirement_settings *row = &s->requirement[i].row;
+        bool is_all = !strcmp(row->load_case, "all");
+        for (int state = 0; state <= s->n_load_case && !isnan(row->share); state++) {
+            hf_report_curve c = {.row = i, .load_case = state ? s->load_case[state - 1].name : "nominal"};
+            if (!is_all && strcmp(row->load_case, c.load_case) != 0) continue;
+            bool has_low = !isnan(row->at_least), has_high = !isnan(row->at_most);
+            bool is_same = has_low && has_high && row->figure != HF_REQUIRED_TENSION; /* of both bounds */
+            c.is_low = true;
+            if (has_low) HF_TRY(read_curve(path, c, row, curves, messages));
+            c.is_low = false;
+            if (has_high && !is_same) HF_TRY(read_curve(path, c, row, curves, messages));
+        }
+    }
+    return HF_OK;
+}
+
+void hf_report_curves_free(hf_report_curves *curves)
+{
+    for (int k = 0; k < curves->n; k++)
+        free(curves->curve[k].value);
+    free(curves->curve);
+    *curves = (hf_report_curves){0};
+}
+
+static void write_curve(const hf_report_curve *c, FILE *f)
+{
+    fputs("{\"load_case\":", f);
+    hf_json_string(c->load_case, f);
+    fprintf(f, ",\"bound\":\"%s\",\"n\":%d", c->is_low ? "at_least" : "at_most", c->n);
+    hf_json_pack_values("value", "f32", c->value, c->n_value, f);
+    hf_json_pack_values("share", "f32", c->share, c->n_value, f);
+    fputc('}', f);
+}
+
+void hf_report_curves_write(const hf_summary *s, const hf_report_curves *curves, FILE *f)
+{
+    char name[256];
+    if (s->n_requirement == 0) return;
+    fputs(",\n\"required\":[", f);
+    for (int i = 0; i < s->n_requirement; i++) {
+        const char *comma = "";
+        fputs(i ? ",\n{\"name\":" : "{\"name\":", f);
+        hf_json_string(hf_requirement_name(&s->requirement[i].row, name, sizeof name), f);
+        fputs(",\"curves\":[", f);
+        for (int k = 0; k < curves->n; k++) {
+            if (curves->curve[k].row != i) continue;
+            fputs(comma, f);
+            write_curve(&curves->curve[k], f);
+            comma = ",";
+        }
+        fputs("]}", f);
+    }
+    fputc(']', f);
+}

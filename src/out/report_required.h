@@ -1,0 +1,33 @@
+/* report_required - the rows of `requirements` on the page of a result: their names and the distribution functions of
+ * their samples. */
+#pragma once
+
+#include <hifdm/status.h>
+#include <hifdm/summary.h>
+#include <stdio.h>
+
+/* Contains the samples of one figure in one load case. */
+typedef struct {
+    int row;               /* of `requirements` */
+    const char *load_case; /* borrowed from the summary */
+    bool is_low;           /* the figure belongs to at_least, else to at_most */
+    int n;                 /* number of samples */
+    int n_value;           /* number of the values below */
+    double *value;         /* [n_value] order statistics, ascending, owned; samples without a value are left out */
+    double *share;         /* [n_value] share of all samples that is at most as large */
+} hf_report_curve;
+
+typedef struct {
+    int n;
+    hf_report_curve *curve; /* [n] owned */
+} hf_report_curves;
+
+/* Reads the samples of all rows with a share from the result file. A curve has at most a few hundred values, which are
+ * evenly spaced among the samples. Returns HF_OK, also if the file has no samples; HF_IO or HF_NO_MEMORY with a
+ * message. The caller calls hf_report_curves_free in any case. */
+hf_status hf_report_curves_read(const char *path, const hf_summary *summary, hf_report_curves *curves,
+                                hf_messages *messages);
+void hf_report_curves_free(hf_report_curves *curves);
+
+/* Writes the member "required": name and curves of each row, in the order of the case. Writes nothing without rows. */
+void hf_report_curves_write(const hf_summary *summary, const hf_report_curves *curves, FILE *file);
