@@ -209,7 +209,8 @@ static void print_answer(const hf_summary *s, bool has_error, FILE *f)
     } else {
         char counted[64];
         fprintf(f, "psi %s mm (RMS position error of %s)%s", hf_print_decimals(r->psi_m * 1e3).text,
-                *counted_text(s, r, counted) ? counted : "the inner nodes", stage == HF_STAGE_REFINE ? " after refinement" : "");
+                *counted_text(s, r, counted) ? counted : "the inner nodes",
+                stage == HF_STAGE_REFINE ? " after refinement" : "");
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);

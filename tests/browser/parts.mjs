@@ -145,7 +145,8 @@ export async function checkRequirements(tab, made) {
     open = sorted.filter((row) => rank.indexOf(row.verdict) < 2).length;
   assert.ok(open > 0 && sorted.length > open + 5 && sorted.at(-1).verdict === "none");
   assert.equal(await tab.locator("#requirements h2").textContent(), `Verdict: ${verdict}`);
-  assert.equal(await tab.locator("main > :not(noscript)").first().getAttribute("id"), "requirements", "the verdict comes first");
+  const first = tab.locator("main > :not(noscript)").first();
+  assert.equal(await first.getAttribute("id"), "requirements", "the verdict comes first");
   const rows = tab.locator("#requirements tbody tr");
   assert.equal(await rows.count(), open + 5);
   await tab.locator("#requirements .tools button").click();

@@ -123,7 +123,9 @@ function boundMarks(row, times, [low, high]) {
 function distribution(row) {
   const { unit, times } = scaleOf(row.unit),
     isBoth = new Set(row.curves.map(({ bound }) => bound)).size > 1, // minimum and maximum tension
-    curves = row.curves.map((c) => ({ ...c, value: Array.from(c.value, (v) => times * v) })).filter((c) => c.value.length);
+    curves = row.curves
+      .map((c) => ({ ...c, value: Array.from(c.value, (v) => times * v) }))
+      .filter((c) => c.value.length);
   const ends = range(curves.flatMap(({ value }) => [value[0], value[value.length - 1]])),
     loadCases = [...new Set(curves.map((c) => c.load_case))],
     x = abscissaeOf(curves, 1e-6 * (ends[1] - ends[0] || Math.abs(ends[1]) || 1)),
