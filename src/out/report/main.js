@@ -114,7 +114,7 @@ function writeFigures() {
     figure("slack cables", fmtCount(resultNumbers.slack_cables)),
   );
   if (resultStage !== "form" && summary.form.n_uncounted)
-    list.push(figure("largest move of an uncounted node", roundedMm(summary.form.uncounted_move_m), "mm"));
+    list.push(figure("maximum displacement of an uncounted node", roundedMm(summary.form.uncounted_move_m), "mm"));
   main.append(el("dl", { class: "figures" }, list));
 }
 
