@@ -629,8 +629,8 @@ static void print_net(const hf_summary *s, hf_stage result, FILE *f)
     else
         fprintf(f, "; pretension %g N", s->pretension_N);
     if (s->n_uncounted > 0 && result != HF_STAGE_FORM && result != HF_N_STAGE && isfinite(s->uncounted_move_m))
-        fprintf(f, "; the optimisation moved uncounted nodes by up to %.4g mm (%d nodes)", s->uncounted_move_m * 1e3,
-                s->n_uncounted);
+        fprintf(f, "; the optimisation moved %d nodes by up to %.4g mm in uncounted directions", s->n_uncounted,
+                s->uncounted_move_m * 1e3);
     fputc('\n', f);
 }
 
