@@ -283,7 +283,7 @@ static void print_refine(const hf_summary *s, bool is_result, FILE *f)
     fprintf(f, ", %s\n", hf_print_duration(s->stage[HF_STAGE_REFINE].wall_s).text);
 }
 
-static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
+static void print_stages(const hf_summary *s, hf_stage result, bool is_short, FILE *f)
 {
     fprintf(f, "  %-13s %9s  %14s  %12s%s  %9s  %s\n", "stage", "psi mm", "boundary ratio", "ratio inside",
             has_merit(s) ? "         merit" : "", "at bounds", "certified to");
@@ -292,10 +292,12 @@ static void print_stages(const hf_summary *s, hf_stage result, FILE *f)
     hf_print_iterations(&s->stage[HF_STAGE_FORM].result, f);
     fprintf(f, ", %s\n", hf_print_duration(s->stage[HF_STAGE_FORM].wall_s).text);
     if (s->stage[HF_STAGE_SEARCH].exists) print_search(s, result == HF_STAGE_SEARCH, f);
-    if (s->stage[HF_STAGE_SEARCH].exists) hf_print_held(s->stage[HF_STAGE_SEARCH].held, f);
+    if (s->stage[HF_STAGE_SEARCH].exists && (!is_short || result == HF_STAGE_SEARCH))
+        hf_print_held(s->stage[HF_STAGE_SEARCH].held, f);
     if (s->stage[HF_STAGE_REFINE].exists) print_refine(s, result == HF_STAGE_REFINE, f);
-    if (s->stage[HF_STAGE_REFINE].exists) hf_print_held(s->stage[HF_STAGE_REFINE].held, f);
-    if (s->objectives.n > 0) hf_print_objectives(s, result_of(s, result), f);
+    if (s->stage[HF_STAGE_REFINE].exists && (!is_short || result == HF_STAGE_REFINE))
+        hf_print_held(s->stage[HF_STAGE_REFINE].held, f);
+    if (s->objectives.n > 0 && !is_short) hf_print_objectives(s, result_of(s, result), f);
 }
 
 /* ---- surface ---- */
@@ -324,6 +326,14 @@ static void print_optics(const hf_summary *s, const double *loss_dB, FILE *f)
         fprintf(f, "%s%s", k ? "/" : "", optics_text(loss_dB[k], 3).text);
 }
 
+static void print_beam(const hf_summary *s, const hf_surface_measures *m, FILE *f)
+{
+    fputs("; beam off by ", f);
+    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
+        fprintf(f, "%s%s", k ? "/" : "", hf_print_decimals(m->pointing_deg[k]).text);
+    fputs(" deg for a fixed feed", f);
+}
+
 /* Prints the losses by physical optics, then those by Ruze's formula and the angles of the beam. */
 static void print_both_feeds(const hf_summary *s, const hf_surface_measures *m, FILE *f)
 {
@@ -334,10 +344,8 @@ static void print_both_feeds(const hf_summary *s, const hf_surface_measures *m, 
     print_losses(s, m->refocused_half_path_rms_m, m->refocused_ruze_loss_dB, f);
     fputs(" and ", f);
     print_losses(s, m->fixed_half_path_rms_m, m->fixed_ruze_loss_dB, f);
-    fputs(" dB); beam off by ", f);
-    for (int k = 0; k < s->surface.frequencies_Hz.n; k++)
-        fprintf(f, "%s%s", k ? "/" : "", hf_print_decimals(m->pointing_deg[k]).text);
-    fputs(" deg for a fixed feed", f);
+    fputs(" dB)", f);
+    print_beam(s, m, f);
 }
 
 void hf_print_gain_loss(const hf_summary *s, FILE *f)
@@ -386,8 +394,9 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
             has_facets ? "facets" : "surface");
 }
 
-/* Prints the surface errors of the nodes of the result and of its facets, if there are any, and the gain losses. */
-static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
+/* Prints the surface errors of the nodes of the result and of its facets, if there are any, and the gain losses. The
+ * short form leaves those to the answer. */
+static void print_errors(const hf_summary *s, hf_stage stage, bool is_short, FILE *f)
 {
     const hf_surface_measures *m = &s->stage[stage].surface;
     if (!m->is_measured) return;
@@ -397,7 +406,9 @@ static void print_errors(const hf_summary *s, hf_stage stage, FILE *f)
         fprintf(f, "; of %d facets %s mm, %s mm after best fit", m->n_facet,
                 hf_print_decimals(m->facet_half_path_rms_m * 1e3).text,
                 hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3).text);
+    if (is_short && highest_with_optics(s, m) >= 0) print_beam(s, m, f);
     fputc('\n', f);
+    if (is_short) return;
     if (s->surface.frequencies_Hz.n > 0) {
         fputs("                ", f);
         hf_print_gain_loss(s, f);
@@ -467,7 +478,7 @@ static void print_front_counts(const hf_summary *s, FILE *f)
                 t->n_row, t->n_point);
 }
 
-static void print_front(const hf_summary *s, const char *path, FILE *f)
+static void print_front(const hf_summary *s, const char *path, bool is_short, FILE *f)
 {
     const hf_front_table *t = s->front;
     bool is_one = hf_front_agrees(t);
@@ -476,9 +487,9 @@ static void print_front(const hf_summary *s, const char *path, FILE *f)
         fputs("  front         the objectives do not conflict: one design is best in all of them\n", f);
     else
         print_front_counts(s, f);
-    if (isfinite(t->initial[0])) print_front_values(s, "initial", 0, t->initial, NULL, f);
+    if (isfinite(t->initial[0]) && !is_short) print_front_values(s, "initial", 0, t->initial, NULL, f);
     if (is_one) print_front_values(s, "best", t->index[t->end[0]] + 1, t->row[t->end[0]].objective, NULL, f);
-    for (int k = 0; k < t->n_objective && !is_one; k++)
+    for (int k = 0; k < t->n_objective && !is_one && !is_short; k++)
         if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
     if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
     if (path && s->finished && point)
@@ -572,6 +583,31 @@ static void print_load_cases(const hf_summary *s, FILE *f)
         fputs("                psi leaves out the loose nodes; the other columns include them where they hang\n", f);
 }
 
+/* Prints the worst psi and the extreme tensions of all load cases in one line. */
+static void print_worst_load_cases(const hf_summary *s, FILE *f)
+{
+    const hf_load_case_summary *psi = NULL, *low = NULL, *high = NULL;
+    int n_failed = 0, n_slack = 0, n_loose = 0;
+    for (int k = 0; k < s->n_load_case; k++) {
+        const hf_load_case_summary *l = &s->load_case[k];
+        bool has_shape = l->result.status == HF_OK;
+        n_failed += !has_shape;
+        if (!has_shape) continue;
+        if (isfinite(l->result.psi_m) && (!psi || l->result.psi_m > psi->result.psi_m)) psi = l;
+        if (!low || l->tension_min_N < low->tension_min_N) low = l;
+        if (!high || l->tension_max_N > high->tension_max_N) high = l;
+        if (l->result.n_slack > n_slack) n_slack = l->result.n_slack;
+        if (l->result.n_loose > n_loose) n_loose = l->result.n_loose;
+    }
+    if (s->n_load_case == 0) return;
+    fprintf(f, "  load cases    worst of %d:", s->n_load_case);
+    if (psi) fprintf(f, " psi %.4f mm (%s);", psi->result.psi_m * 1e3, psi->name);
+    if (low)
+        fprintf(f, " tension %.4f N (%s) to %.4f N (%s);", low->tension_min_N, low->name, high->tension_max_N,
+                high->name);
+    fprintf(f, " %d slack, %d loose, %d without a shape\n", n_slack, n_loose, n_failed);
+}
+
 /* Prints the far field of the result, one line for each frequency and cut. */
 static void print_pattern(const hf_pattern_summary *s, FILE *f)
 {
@@ -592,13 +628,31 @@ static void print_pattern(const hf_pattern_summary *s, FILE *f)
     }
 }
 
+/* Prints the deflections of the truss at the attachments. */
+static void print_deflection(const hf_summary *s, hf_stage result, FILE *f)
+{
+    const hf_coupling_result *r = &s->stage[HF_STAGE_FORM].result.coupling, *end = &result_of(s, result)->coupling;
+    fprintf(f, "the truss deflects by up to %.4f mm at the attachments", r->deflection_max_m * 1e3);
+    if (end != r && end->iterations > 0) fprintf(f, ", in the result by %.4f mm", end->deflection_max_m * 1e3);
+}
+
+static void print_truss(const hf_summary *s, hf_stage result, bool is_short, FILE *f)
+{
+    fprintf(f, "  truss         %d nodes, %d members; %.2f kg", s->truss.n_node, s->truss.n_member, s->truss.mass_kg);
+    if (is_short && s->has_coupling) {
+        fputs("; ", f);
+        print_deflection(s, result, f);
+    }
+    fputc('\n', f);
+}
+
 /* Prints the deflections of the truss and the convergence of the coupling in the form-finding. */
 static void print_coupling(const hf_summary *s, hf_stage result, FILE *f)
 {
-    const hf_coupling_result *r = &s->stage[HF_STAGE_FORM].result.coupling, *end = &result_of(s, result)->coupling;
+    const hf_coupling_result *r = &s->stage[HF_STAGE_FORM].result.coupling;
     static const char *const ended[] = {"", "converged", "not converged", "diverged", "ended without a shape"};
-    fprintf(f, "  coupling      the truss deflects by up to %.4f mm at the attachments", r->deflection_max_m * 1e3);
-    if (end != r && end->iterations > 0) fprintf(f, ", in the result by %.4f mm", end->deflection_max_m * 1e3);
+    fputs("  coupling      ", f);
+    print_deflection(s, result, f);
     fprintf(f, "; %s after %d iteration%s, last step %.1e m\n",
             r->stop_reason <= HF_COUPLING_NET ? ended[r->stop_reason] : "", r->iterations,
             r->iterations == 1 ? "" : "s", r->step_m);
@@ -606,10 +660,15 @@ static void print_coupling(const hf_summary *s, hf_stage result, FILE *f)
 
 /* ---- the whole summary ---- */
 
-static void print_end(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
+static void print_end(const hf_summary *s, const char *path, hf_print_style style, bool is_short, FILE *f)
 {
     if (!path) return;
-    hf_print_line(f, "  results       %s", path);
+    if (s->finished && is_short) {
+        hf_print_line(f, "  results       %s; details: hifdm show --verbose %s; a page with charts: hifdm report %s",
+                      path, path, path);
+        return;
+    }
+    if (!is_short) hf_print_line(f, "  results       %s", path);
     if (s->finished && !style.verbose)
         hf_print_line(f, "  more          details: hifdm show --verbose %s; a page with charts: hifdm report %s", path,
                       path);
@@ -621,7 +680,7 @@ static void print_end(const hf_summary *s, const char *path, hf_print_style styl
 /* Prints nodes, cables and design variables, and how far the optimisation moved nodes that it does not count. */
 static void print_net(const hf_summary *s, hf_stage result, FILE *f)
 {
-    fprintf(f, "  net           %d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
+    fprintf(f, "%d nodes (%d free), %d cables", s->n_node, s->n_free, s->n_cable);
     if (s->stage[HF_STAGE_SEARCH].exists || s->stage[HF_STAGE_REFINE].exists || s->front)
         fprintf(f, ", %d design variables", s->n_variable);
     if (s->has_own_tensions)
@@ -634,26 +693,50 @@ static void print_net(const hf_summary *s, hf_stage result, FILE *f)
     fputc('\n', f);
 }
 
-void hf_print_summary(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
+/* Prints what remains below a table of verdicts: at most 12 lines. --verbose prints the long form. */
+static void print_short(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
 {
     hf_stage result = hf_store_result_stage(s);
+    char title[2 * sizeof s->title];
+    hf_text_escape(*s->title ? s->title : s->case_path, title, sizeof title);
+    fprintf(f, "  case          %s; ", title);
+    print_net(s, result, f);
+    if (s->has_truss) print_truss(s, result, true, f);
+    if (s->front)
+        print_front(s, path, true, f);
+    else
+        print_stages(s, result, true, f);
+    print_errors(s, result, true, f);
+    print_worst_load_cases(s, f);
+    if (s->tolerance) hf_print_tolerance(s->tolerance, HF_PRINT_SHORT, f);
+    print_end(s, path, style, true, f);
+}
+
+static void print_long(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
+{
+    hf_stage result = hf_store_result_stage(s);
+    hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
+    fputs("  net           ", f);
+    print_net(s, result, f);
+    if (s->has_truss) print_truss(s, result, false, f);
+    print_stages(s, result, false, f);
+    if (s->has_coupling) print_coupling(s, result, f);
+    print_errors(s, result, false, f);
+    if (style.verbose) hf_print_details(s, f);
+    if (s->front) print_front(s, path, false, f);
+    if (s->front) print_form_parts(s, result, f);
+    if (result != HF_N_STAGE) print_pattern(s->stage[result].pattern, f);
+    print_load_cases(s, f);
+    if (s->tolerance) hf_print_tolerance(s->tolerance, style.verbose ? HF_PRINT_VERBOSE : HF_PRINT_NORMAL, f);
+    print_end(s, path, style, false, f);
+}
+
+void hf_print_summary(const hf_summary *s, const char *path, hf_print_style style, FILE *f)
+{
     hf_print_requirements(s, style, f);
     if (style.has_colour) fputs(HF_PRINT_BOLD, f);
     print_answer(s, style.has_error, f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
-    hf_print_line(f, "  case          %s", *s->title ? s->title : s->case_path);
-    print_net(s, result, f);
-    if (s->has_truss)
-        fprintf(f, "  truss         %d nodes, %d members; %.2f kg\n", s->truss.n_node, s->truss.n_member,
-                s->truss.mass_kg);
-    print_stages(s, result, f);
-    if (s->has_coupling) print_coupling(s, result, f);
-    print_errors(s, result, f);
-    if (style.verbose) hf_print_details(s, f);
-    if (s->front) print_front(s, path, f);
-    if (s->front) print_form_parts(s, result, f);
-    if (result != HF_N_STAGE) print_pattern(s->stage[result].pattern, f);
-    print_load_cases(s, f);
-    if (s->tolerance) hf_print_tolerance(s->tolerance, style.verbose, f);
-    print_end(s, path, style, f);
+    bool is_short = s->n_requirement > 0 && !style.verbose;
+    (is_short ? print_short : print_long)(s, path, style, f);
 }

@@ -41,6 +41,8 @@ void hf_print_steps(const hf_refine_summary *refine, FILE *file);
 /* Prints how the genetic algorithm ended: "after 12 generations", "by stagnation after 9 generations". */
 void hf_print_generations(const hf_search_summary *search, FILE *file);
 
-/* Prints psi of the as-built net, yield and the cables with the largest shares. `verbose` adds all measures and the
- * control variate. */
-void hf_print_tolerance(const hf_tolerance_summary *tolerance, bool verbose, FILE *file);
+typedef enum { HF_PRINT_SHORT, HF_PRINT_NORMAL, HF_PRINT_VERBOSE } hf_print_amount;
+
+/* Prints psi of the as-built net and the yield; the normal amount adds the cables with the largest shares, the verbose
+ * one all measures and the control variate. */
+void hf_print_tolerance(const hf_tolerance_summary *tolerance, hf_print_amount amount, FILE *file);

@@ -99,7 +99,7 @@ static void print_shares(const hf_tolerance_summary *t, FILE *f)
     if (*line) hf_print_line(f, "                cables that contribute most to the variance of psi: %s", line);
 }
 
-void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
+void hf_print_tolerance(const hf_tolerance_summary *t, hf_print_amount amount, FILE *f)
 {
     if (isinf(t->psi_95_m))
         fprintf(f, "  as built      fewer than 95 %% of %d samples have a shape; psi ", t->samples);
@@ -111,9 +111,9 @@ void hf_print_tolerance(const hf_tolerance_summary *t, bool verbose, FILE *f)
     print_mm(f, t->nominal_psi_m);
     fprintf(f, " without errors; %d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack,
             t->n_with_loose, t->n_failed, hf_print_duration(t->tolerance_wall_s).text);
-    for (int k = 0; verbose && k < HF_TOLERANCE_SLACK; k++)
+    for (int k = 0; amount == HF_PRINT_VERBOSE && k < HF_TOLERANCE_SLACK; k++)
         print_measure(&t->figure[k], k, f);
-    if (verbose) print_first_order(t, f);
+    if (amount == HF_PRINT_VERBOSE) print_first_order(t, f);
     print_yield(t, f);
-    print_shares(t, f);
+    if (amount != HF_PRINT_SHORT) print_shares(t, f);
 }

@@ -420,6 +420,38 @@ START_TEST(samples_of_other_requirements_are_not_used)
 }
 END_TEST
 
+/* Below the verdicts stand at most 12 lines, with everything that a run can compute, and with a front. */
+START_TEST(a_summary_below_verdicts_is_short)
+{
+    static const char *const search[] = {
+        "  objective: [{figure: psi}]\n  population: 6\n  generations: 2\n  refine: true\n",
+        "  method: lm\n  front: [{figure: psi}, {figure: pull}]\n",
+    };
+    const char *c = file_with(
+        "c.yaml",
+        formatted("title: everything\nscene:\n  paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, "
+                  "rear_distance_m: 1.8}\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\nform: {pretension_N: 30, prestress: "
+                  "exact}\n"
+                  "truss: {expansion_per_K: 1e-6, ring: {cells_per_bay: 2, bracing: single, held: bay, longeron: "
+                  "{diameter_m: 0.03, wall_m: "
+                  "0.001}}}\nsurface: {frequencies_Hz: [2e9, 8e9], pattern: {phi_deg: [0, 90]}}\n" LOADS TOLERANCE
+                  "optimize:\n  variables: [{set: tie, vary: force_density, range: 20 %%}]\n%s" ROWS
+                  "  - {figure: psi, at_most: 1e-6, search: off}\n  - {figure: tension, at_least: 0.1, load_case: all, "
+                  "share: 0.5, search: off}\n",
+                  100, search[_i]));
+    HIFDM(0, "run", c, "-o", temp("a.h5"));
+    OUT("verdict: ");
+    OUT("\n  load cases    worst of 2: psi ");
+    const char *below = said.out;
+    for (int row = 0; row < 3; row++) /* the verdict and its two rows */
+        below = strchr(below, '\n') + 1;
+    ck_assert_msg(count_of(below, "\n") <= 12, "%s", below);
+    HIFDM(0, "show", temp("a.h5"), "--verbose");
+    OUT("\n  load cases    as-built net ");
+    OUT("\n                windy ");
+}
+END_TEST
+
 /* A study runs cases with requirements, too. */
 START_TEST(points_of_a_study_have_verdicts)
 {
@@ -452,6 +484,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
     tcase_add_test(tests, killed_runs_resume);
     tcase_add_test(tests, samples_of_other_requirements_are_not_used);
+    tcase_add_loop_test(tests, a_summary_below_verdicts_is_short, 0, 2);
     tcase_add_test(tests, points_of_a_study_have_verdicts);
     return suite;
 }
