@@ -274,11 +274,13 @@ static void print_summary(const job *j, const char *path, FILE *f)
 {
     char best[400] = "", row[16]; /* a longer id is truncated */
     snprintf(row, sizeof row, "%d", j->best + 1);
+    hf_print_text counted = hf_print_counted(j->problem.model.n_inner_node, j->problem.model.n_free);
     const char *id = j->best >= 0 && row_id(j, j->best) ? row_id(j, j->best) : row;
     if (j->best >= 0 && j->problem.objectives.n_objective)
         snprintf(best, sizeof best, "; best merit %.6g, %s", j->result[j->best].merit, id);
     else if (j->best >= 0)
-        snprintf(best, sizeof best, "; best psi %.4f mm, %s", j->result[j->best].psi_m * 1e3, id);
+        snprintf(best, sizeof best, "; best psi %.4f mm%s%s, %s", j->result[j->best].psi_m * 1e3,
+                 *counted.text ? " of " : "", counted.text, id);
     hf_print_line(f, "%d designs, %d feasible%s; %s, %.0f evaluations/s by %s on %d thread%s; results in %s",
                   j->table.n_row, j->n_feasible, best, hf_print_duration(j->wall_s).text, j->table.n_row / j->wall_s,
                   hf_solver_word[j->problem.solver], j->problem.batch.n_thread,

@@ -169,6 +169,23 @@ static hf_status read_points(hf_merged *m, hf_messages *messages)
     return HF_OK;
 }
 
+/* Reads a number of nodes that all completed points agree on, otherwise 0. */
+static hf_status read_count(const hf_merged *m, const char *name, int *count, hf_messages *messages)
+{
+    hf_series s = {0};
+    bool is_first = true;
+    hf_status status = hf_store_read_series(m->path, name, 1, &s, messages);
+    for (int i = 0; i < m->n && s.n == m->n; i++) {
+        if (!hf_merged_is_done(m, i)) continue;
+        bool is_same = s.value[i] > 0 && s.value[i] <= INT_MAX && (is_first || s.value[i] == *count);
+        *count = is_same ? (int)s.value[i] : 0;
+        is_first = false;
+        if (!is_same) break;
+    }
+    hf_series_free(&s);
+    return status;
+}
+
 /* ---- what varies ---- */
 
 bool hf_merged_is_done(const hf_merged *m, int i)
@@ -545,6 +562,8 @@ hf_status hf_merged_read(const char *path, hf_merged *m, hf_messages *messages)
     *m = (hf_merged){.path = path, .lead = -1, .best = -1};
     HF_TRY(read_points(m, messages));
     HF_TRY(read_axes(m, messages));
+    HF_TRY(read_count(m, "/points/form/n_inner_node", &m->n_inner_node, messages));
+    HF_TRY(read_count(m, "/points/form/n_free", &m->n_free, messages));
     for (hf_merged_stage stage = HF_MERGED_FORM; stage < HF_MERGED_BUILT; stage++)
         HF_TRY(read_stage(m, stage, messages));
     for (int k = 0; k < N_BUILT; k++)

@@ -53,6 +53,7 @@ typedef struct {
     hf_series input[HF_STUDY_AXIS_MAX];     /* [n] or [n][2] values of axis a */
     hf_texts input_text[HF_STUDY_AXIS_MAX]; /* [n] values of an axis of words or seeds */
     int n_axis;
+    int n_inner_node, n_free; /* the nodes that psi counts, and all free nodes; 0: points differ, or do not say it */
     int n_figure;
     hf_merged_figure figure[HF_MERGED_FIGURE_MAX]; /* in the order of the stages */
     hf_merged_stage main;                          /* the stage that is the result */

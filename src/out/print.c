@@ -65,6 +65,14 @@ double hf_print_loss_dB(double loss_dB)
     return loss_dB < LEAST_DB ? 0 : loss_dB;
 }
 
+hf_print_text hf_print_counted(int n_inner_node, int n_free)
+{
+    hf_print_text t = {""};
+    if (n_inner_node > 0 && n_inner_node < n_free)
+        snprintf(t.text, sizeof t.text, "%d of %d free nodes", n_inner_node, n_free);
+    return t;
+}
+
 hf_print_text hf_print_change(double value, double base)
 {
     double below = 100 * (1 - value / base);

@@ -29,7 +29,7 @@ void hf_print_summary(const hf_summary *summary, const char *path, hf_print_styl
 
 /* A short text that a function returns by value, for use within one expression: hf_print_duration(wall_s).text */
 typedef struct {
-    char text[40];
+    char text[64];
 } hf_print_text;
 
 /* Formats a duration: "85 us", "1.3 ms", "2.7 s", "4 min 10 s". */
@@ -44,6 +44,10 @@ hf_print_text hf_print_decimals(double value);
 /* Formats the change of a value relative to a base > 0: "34.9 % lower than", "4.24 % higher than", or "the same as"
  * when it rounds to 0. */
 hf_print_text hf_print_change(double value, double base);
+
+/* Formats which nodes psi counts: "11 of 59 free nodes", or "" when it counts all of them. n_inner_node is 0 in files
+ * of earlier versions, which do not say it. */
+hf_print_text hf_print_counted(int n_inner_node, int n_free);
 
 /* Returns the factor from a unit of files to that of people, and sets *told to the latter: m to mm, Hz to GHz. */
 double hf_print_scale(const char *unit, const char **told);

@@ -618,6 +618,8 @@ static void print_head(const hf_merged *m, FILE *f)
         if (hf_merged_axis_varies(m, a)) add_item(&axes, hf_texts_at(&m->input_name, a));
     }
     end_items(&axes);
+    hf_print_text counted = hf_print_counted(m->n_inner_node, m->n_free);
+    if (*counted.text) fprintf(f, "  %-13s %s\n", "psi counts", counted.text);
 }
 
 /* ---- the whole text ---- */

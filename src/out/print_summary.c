@@ -115,15 +115,12 @@ static bool minimises_psi(const hf_summary *s)
     return false;
 }
 
-/* Writes "11 of 59 free nodes" if psi does not count all of them, else "". Files of earlier versions do not contain the
- * number of inner nodes. Returns text. */
-static const char *counted_text(const hf_summary *s, const hf_form_result *r, char text[64])
+/* Returns "11 of 59 free nodes" if psi does not count all of them, else "". */
+static hf_print_text counted_text(const hf_summary *s, const hf_form_result *r)
 {
-    *text = '\0';
-    if (s->n_inner_node > 0 && s->n_inner_node < s->n_free)
-        snprintf(text, 64, "%d of %d free nodes%s", s->n_inner_node, s->n_free,
-                 r->n_loose ? ", without loose ones" : "");
-    return text;
+    hf_print_text t = hf_print_counted(s->n_inner_node, s->n_free);
+    if (*t.text && r->n_loose) hf_text_append(t.text, sizeof t.text, ", ", "without loose ones", "");
+    return t;
 }
 
 /* Prints the objectives of the form-finding and of the result, in their units: "facets 1.7436 -> 1.4720 mm". */
@@ -138,13 +135,13 @@ static void print_objectives_gained(const hf_summary *s, const hf_form_result *r
         print_objective_unit(unit, f);
     }
     if (s->objectives.n > OBJECTIVES_SHOWN) fprintf(f, " and %d more", s->objectives.n - OBJECTIVES_SHOWN);
-    char counted[64];
-    bool is_part = *counted_text(s, r, counted) != '\0';
+    hf_print_text counted = counted_text(s, r);
+    bool is_part = *counted.text != '\0';
     if (minimises_psi(s)) {
-        fprintf(f, " (form-finding -> result%s%s)", is_part ? "; psi of " : "", counted);
+        fprintf(f, " (form-finding -> result%s%s)", is_part ? "; psi of " : "", counted.text);
         return;
     }
-    fprintf(f, " (form-finding -> result); psi %s%s%s", is_part ? "of " : "", counted, is_part ? " " : "");
+    fprintf(f, " (form-finding -> result); psi %s%s%s", is_part ? "of " : "", counted.text, is_part ? " " : "");
     print_objective_value(s->stage[HF_STAGE_FORM].result.psi_m, "m", f);
     fputs(" -> ", f);
     print_objective_value(r->psi_m, "m", f);
@@ -207,10 +204,9 @@ static void print_answer(const hf_summary *s, bool has_error, FILE *f)
         fputs("no psi: no taut cable holds an inner node", f);
         return;
     } else {
-        char counted[64];
+        hf_print_text counted = counted_text(s, r);
         fprintf(f, "psi %s mm (RMS position error of %s)%s", hf_print_decimals(r->psi_m * 1e3).text,
-                *counted_text(s, r, counted) ? counted : "the inner nodes",
-                stage == HF_STAGE_REFINE ? " after refinement" : "");
+                *counted.text ? counted.text : "the inner nodes", stage == HF_STAGE_REFINE ? " after refinement" : "");
         print_gained(s, stage, f);
     }
     if (r->status == HF_OK) print_frequency(s, stage, r->psi_m, f);

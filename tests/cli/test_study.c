@@ -274,6 +274,20 @@ START_TEST(failed_points_are_told_and_never_the_best)
 }
 END_TEST
 
+/* Points of different nets count different numbers of nodes, so the study names none. */
+START_TEST(nodes_that_psi_counts_are_named)
+{
+    const char *path = file_with("s.yaml", NET "sweep:\n  scene.paraboloid.rings: [2, 3]\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    HIFDM(0, "show", temp("s.h5"));
+    ck_assert_msg(!strstr(said.out, "psi counts"), "%s", said.out);
+    path = file_with("t.yaml", NET AXIS);
+    sweep_and_merge(path, temp("t.d"), temp("t.h5"));
+    HIFDM(0, "show", temp("t.h5"));
+    OUT("\n  psi counts    19 of 38 free nodes\n");
+}
+END_TEST
+
 /* A file may name its axes, and words on them, as it likes: nothing of it commands a terminal. */
 START_TEST(odd_names_are_shown_escaped)
 {
@@ -458,6 +472,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, objectives_say_which_point_is_best);
     tcase_add_test(tcase, a_best_point_at_the_end_of_an_axis_is_told);
     tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
+    tcase_add_test(tcase, nodes_that_psi_counts_are_named);
     tcase_add_test(tcase, odd_names_are_shown_escaped);
     tcase_add_test(tcase, a_large_study_shows_its_best);
     tcase_add_test(tcase, check_says_what_a_sweep_would_do);
