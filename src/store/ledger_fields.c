@@ -128,8 +128,8 @@ static int print_load_cases(const hf_summary *s, char *text, size_t size)
 }
 
 /* Writes the verdicts: "n_failed=1 n_undecided=0 relative_margin_min=-0.1 verdict_0=1 margin_0=-0.5 ...". The minimum
- * of the relative margins leaves out rows without a verdict and rows whose bound is 0; without any other row it is
- * NaN. Returns the length. */
+ * of the relative margins leaves out rows without a verdict and rows whose bound is 0. It is NaN without any other row,
+ * and if only a row with the bound 0 fails, because a positive margin would deny the failure. Returns the length. */
 static int print_verdicts(const hf_summary *s, char *text, size_t size)
 {
     int count[HF_VERDICT_N] = {0};
@@ -140,6 +140,7 @@ static int print_verdicts(const hf_summary *s, char *text, size_t size)
         count[v->verdict]++;
         if (v->verdict != HF_VERDICT_NONE) least = fmin(least, v->relative_margin); /* fmin ignores NaN */
     }
+    if (count[HF_VERDICT_FAIL] > 0 && least >= 0) least = (double)NAN;
     size_t used = (size_t)snprintf(text, size, "n_failed=%d n_undecided=%d relative_margin_min=%.17g",
                                    count[HF_VERDICT_FAIL], count[HF_VERDICT_UNDECIDED], least);
     for (int i = 0; i < s->n_requirement && used < size; i++) {

@@ -189,6 +189,19 @@ START_TEST(points_rank_by_their_requirements)
 }
 END_TEST
 
+/* A row with the bound 0 has no relative margin. If only such a row fails, no positive margin may deny it. */
+START_TEST(a_failed_point_has_no_positive_margin)
+{
+    const char *path =
+        file_with("s.yaml", NET "requirements: [{figure: tension, set: tie, at_most: 0}, {figure: psi, at_most: 1}]\n"
+                                "sweep: {form.pretension_N: [4, 8]}\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    EXPECT(temp("s.h5"), "--", "a['points/requirements/n_failed'][:].tolist() == [1, 1]",
+           "np.isnan(a['points/requirements/relative_margin_min'][:]).all()",
+           "(a['points/requirements/relative_margin'][:, 1] > 0.9).all()");
+}
+END_TEST
+
 /* The point with the smallest psi of 95 % has too little tension, so it is not the best while another point passes. */
 START_TEST(a_point_without_the_yield_is_not_the_best)
 {
@@ -468,6 +481,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, points_say_whether_they_have_the_yield);
     tcase_add_test(tcase, points_rank_by_their_requirements);
+    tcase_add_test(tcase, a_failed_point_has_no_positive_margin);
     tcase_add_test(tcase, a_point_without_the_yield_is_not_the_best);
     tcase_add_test(tcase, objectives_say_which_point_is_best);
     tcase_add_test(tcase, a_best_point_at_the_end_of_an_axis_is_told);
