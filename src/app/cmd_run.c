@@ -23,6 +23,11 @@ static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 static hf_status judge_strictly(const hf_summary *s, hf_messages *messages)
 {
     int n = 0, n_judged = 0;
+    if (!s->finished) return HF_OK; /* a task of several */
+    if (s->n_requirement == 0)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "--strict checks requirements, but the case has none: add the list "
+                        "`requirements`, or remove the option");
     for (int i = 0; i < s->n_requirement; i++) {
         n += s->requirement[i].verdict == HF_VERDICT_FAIL;
         n_judged += s->requirement[i].verdict != HF_VERDICT_NONE;
@@ -62,13 +67,13 @@ static hf_status run_case(const hf_options *o, FILE *file, hf_messages *messages
     hf_status status = hf_run_case(&request, &summary, output, messages);
     hf_progress_end(&progress);
     const char *path = *output ? output : NULL;
+    if (status == HF_OK && o->strict) status = judge_strictly(&summary, messages);
     if (o->json)
         hf_summary_write_json(&summary, status, messages->text, path, file);
     else if (path && !o->quiet)
         hf_print_summary(&summary, path,
                          (hf_print_style){o->verbose, hf_output_has_colour(STDOUT_FILENO), messages->n_error > 0},
                          file);
-    if (status == HF_OK && o->strict) status = judge_strictly(&summary, messages);
     hf_summary_free(&summary);
     return status;
 }

@@ -339,6 +339,7 @@ void hf_summary_write_json(const hf_summary *s, hf_status status, const char *me
     hf_json writer = {.file = f}, *j = &writer;
     hf_json_open(j, NULL, '{');
     hf_json_text(j, "status", hf_status_word(status));
+    hf_json_bool(j, "finished", s->finished);
     write_verdicts(s, j);
     if (s->has_truss) {
         hf_json_open_line(j, " ", "truss", '{');

@@ -240,7 +240,11 @@ START_TEST(strict_ends_with_its_own_status)
     OUT("verdict: fail; ");
     HIFDM(0, "run", file_with("c.yaml", formatted(text, "1")), "-o", path, "--restart", "--strict", "--quiet");
     HIFDM(0, "run", c, "-o", path, "--strict", "--quiet");
-    HIFDM(0, "run", file_with("d.yaml", BUILT_SCENE), "-o", temp("d.h5"), "--strict", "--quiet");
+    HIFDM(2, "run", file_with("d.yaml", BUILT_SCENE), "-o", temp("d.h5"), "--strict", "--quiet");
+    ERR("--strict checks requirements, but the case has none");
+    HIFDM(6, "run", file_with("c.yaml", formatted(text, "1e-3")), "-o", path, "--restart", "--strict", "--json");
+    EXPECT(out_as("a.json"), "--", "a['status'] == 'requirement_failed' and a['finished'] and a['verdict'] == 'fail'",
+           "a['errors'] == ['the result fails 1 of 2 requirements']");
 }
 END_TEST
 
