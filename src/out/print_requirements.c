@@ -84,7 +84,8 @@ static void print_worst(const hf_requirement_verdict *v, FILE *f)
 {
     char value[CELL];
     bool is_sample = v->worst_sample >= 0, has_case = strcmp(v->row.load_case, v->worst_load_case) != 0;
-    if (!is_sample && !*v->worst_item && !has_case) return;
+    bool is_alike = is_sample && v->verdict == HF_VERDICT_PASS && v->worst_value == 0; /* no sample has slack cables */
+    if (is_alike || (!is_sample && !*v->worst_item && !has_case)) return;
     fprintf(f, "; worst: ");
     if (is_sample) fprintf(f, "%s in sample %ld", value_text(v->row.figure, v->worst_value, value), v->worst_sample);
     if (*v->worst_item) fprintf(f, "%s%s", is_sample ? ", " : "", v->worst_item);

@@ -14,6 +14,7 @@
 #define FREQUENCY_MOST_HZ 1e12 /* higher frequencies come from errors that are only rounding */
 #define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
 #define MORE_LOSS_DB 0.001     /* more gain loss that is worth a line */
+#define MOVED_M 1e-6           /* displacement of uncounted nodes that is worth a word */
 
 /* Returns the result of a stage, and that of the form-finding without one (HF_N_STAGE). */
 static const hf_form_result *result_of(const hf_summary *s, hf_stage stage)
@@ -683,7 +684,8 @@ static void print_net(const hf_summary *s, hf_stage result, FILE *f)
         fputs("; each cable has a law of its own", f);
     else
         fprintf(f, "; pretension %g N", s->pretension_N);
-    if (s->n_uncounted > 0 && result != HF_STAGE_FORM && result != HF_N_STAGE && isfinite(s->uncounted_move_m))
+    bool is_moved = isfinite(s->uncounted_move_m) && s->uncounted_move_m > MOVED_M;
+    if (s->n_uncounted > 0 && result != HF_STAGE_FORM && result != HF_N_STAGE && is_moved)
         fprintf(f, "; the optimisation moved %d nodes by up to %.4g mm in uncounted directions", s->n_uncounted,
                 s->uncounted_move_m * 1e3);
     fputc('\n', f);
