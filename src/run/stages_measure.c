@@ -10,7 +10,7 @@
 #include "search/parallel.h"
 #include "solve/coupling.h"
 #include "solve/limits.h"
-#include "surface/facet_mesh.h"
+#include "surface/antenna_shape.h"
 #include <hifdm/metrics.h>
 #include <hifdm/pattern.h>
 
@@ -103,27 +103,20 @@ static hf_status measure_pattern(hf_run *r, hf_stage stage, const hf_workspace *
                                  hf_messages *messages)
 {
     const hf_problem *p = &r->problem;
-    hf_arena sags = {0};
-    hf_facet_shape shape;
+    hf_antenna_shape shape;
     hf_pattern_table table = {0};
     hf_pattern_summary *to = summary->stage[stage].pattern;
-    double pull_ratio = 0, mesh_N_per_m = p->surface.mesh_tension_N_per_m, *sag_m = NULL;
     if (!p->surface.has_pattern) return HF_OK;
     if (!to) to = summary->stage[stage].pattern = calloc(1, sizeof *to);
     if (!to) return hf_error(messages, HF_NO_MEMORY, "out of memory for the far field");
-    hf_status status = hf_facet_shape_take(&p->model, w->position_m, w->tension_N, &shape);
-    if (status == HF_OK && mesh_N_per_m > 0)
-        status = hf_facet_mesh_make_sags(mesh_N_per_m, &p->facets, &shape, &sags, &sag_m, &pull_ratio);
-    if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST) {
-        const hf_pattern_surface surface = {&p->facets, shape.position_m, sag_m};
-        status = solve_pattern(r, &surface, &table, to);
-    }
+    hf_status status = hf_antenna_shape_take(p->surface.mesh_tension_N_per_m, &p->facets, &p->model, w->position_m,
+                                             w->tension_N, &shape);
+    if (status == HF_OK && shape.exists) status = solve_pattern(r, &shape.surface, &table, to);
     if (status == HF_OK && table.block) doubt_pattern(&p->surface.pattern, to, stage, messages);
     if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the far field");
     if (status == HF_OK && table.block) status = hf_store_pattern(r->store, stage, &table, to, messages);
     hf_pattern_table_free(&table);
-    hf_arena_free(&sags);
-    hf_arena_free_block(shape.block);
+    hf_antenna_shape_free(&shape);
     return status;
 }
 

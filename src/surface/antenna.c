@@ -5,6 +5,7 @@
  *       -> best fit (surface_near) -> weighted spread, refocused feed
  *       -> currents with the fixed feed -> gain; Newton's method over the direction -> pointing
  *       -> points in the frame of the best fit -> currents with the refocused feed -> gain
+ *     derivatives of the gain and of the pointing: antenna_gradient.c
  *
  * Contents: points - currents - errors - best fit - pointing - a shape - the antenna */
 #include "surface/antenna.h"
@@ -117,19 +118,28 @@ static void find_middle(const hf_antenna *a, const double *x, double middle_m[3]
         middle_m[d] = sum[d] / all;
 }
 
-/* Turns the axis of a feed towards a point that has moved by move_m, as seen from the feed. */
-static void aim(const hf_antenna *a, const double move_m[3], hf_feed *feed)
+/* The point has moved with the weighted mean of the points, as seen from the feed. */
+void hf_antenna_aim_vector(const hf_antenna *a, const double *x, double longer_m, const double *beside_m,
+                           double vector_m[3])
 {
-    double axis[3], along, part;
+    const hf_feed *f = &a->beam.feed;
+    double middle_m[3], along = 0;
+    find_middle(a, x, middle_m);
     for (int d = 0; d < 3; d++)
-        axis[d] = a->middle_m[d] - a->beam.feed.position_m[d];
-    along = hf_dot3(axis, feed->axis);
+        along += (a->middle_m[d] - f->position_m[d]) * f->axis[d];
+    for (int d = 0; d < 3; d++) {
+        double move_m = middle_m[d] + ((beside_m ? beside_m[d] : 0) - a->middle_m[d] - (d == 2 ? longer_m : 0));
+        vector_m[d] = along * f->axis[d] + move_m;
+    }
+    if (f->kind == HF_FEED_LINE) vector_m[1] = 0;
+}
+
+/* Turns the axis of a feed into the direction of a vector. */
+static void aim(const double vector_m[3], hf_feed *feed)
+{
+    double part, size = hf_norm(vector_m[0], vector_m[1], vector_m[2]);
     for (int d = 0; d < 3; d++)
-        axis[d] = along * feed->axis[d] + move_m[d];
-    if (feed->kind == HF_FEED_LINE) axis[1] = 0;
-    double size = hf_norm(axis[0], axis[1], axis[2]);
-    for (int d = 0; d < 3; d++)
-        feed->axis[d] = axis[d] / size;
+        feed->axis[d] = vector_m[d] / size;
     if (feed->kind == HF_FEED_LINE) return;
     part = hf_dot3(feed->co, feed->axis);
     for (int d = 0; d < 3; d++)
@@ -139,14 +149,12 @@ static void aim(const hf_antenna *a, const double move_m[3], hf_feed *feed)
 double hf_antenna_refocused_dBi(const hf_antenna *a, const hf_surface_pose *pose, const double *beside_m,
                                 hf_antenna_points *q, hf_feed *feed)
 {
-    double middle_m[3], longer_m = 1 / (4 * pose->curvature_per_m) - a->focal_length_m;
+    double vector_m[3], longer_m = 1 / (4 * pose->curvature_per_m) - a->focal_length_m;
     *feed = a->beam.feed;
     turn_points(pose, (size_t)a->n_point, q->x);
-    find_middle(a, q->x, middle_m);
-    for (int d = 0; d < 3; d++)
-        middle_m[d] += (beside_m ? beside_m[d] : 0) - a->middle_m[d] - (d == 2 ? longer_m : 0);
+    hf_antenna_aim_vector(a, q->x, longer_m, beside_m, vector_m);
     feed->position_m[2] += longer_m;
-    if (feed->kind != HF_FEED_PLANE_WAVE) aim(a, middle_m, feed);
+    if (feed->kind != HF_FEED_PLANE_WAVE) aim(vector_m, feed);
     hf_antenna_light(a, feed, q);
     return gain_dBi(a, q);
 }
@@ -338,19 +346,19 @@ void hf_antenna_blank(hf_antenna_figures *to)
     *to = (hf_antenna_figures){none, none, NAN};
 }
 
-hf_status hf_antenna_measure(const hf_antenna *a, const hf_pattern_surface *shape, double *scratch,
+hf_status hf_antenna_measure(const hf_antenna *a, unsigned what, const hf_pattern_surface *shape, double *scratch,
                              hf_antenna_figures *to)
 {
     hf_surface_pose pose;
     hf_feed feed;
-    bool is_found;
+    bool is_found = false;
     hf_antenna_blank(to);
     if (a->is_too_coarse) return HF_OK;
     hf_antenna_points q = hf_antenna_points_of(a, shape, scratch);
-    HF_TRY(hf_antenna_fit(a, q.x, &pose, &is_found));
-    hf_antenna_light(a, &a->beam.feed, &q);
-    judge(a, &q, 1 / (4 * a->focal_length_m), &to->fixed);
-    to->pointing_deg = pointing_deg(a, &q);
+    if (what & HF_ANTENNA_REFOCUSED) HF_TRY(hf_antenna_fit(a, q.x, &pose, &is_found));
+    if (what & (HF_ANTENNA_FIXED | HF_ANTENNA_POINTING)) hf_antenna_light(a, &a->beam.feed, &q);
+    if (what & HF_ANTENNA_FIXED) judge(a, &q, 1 / (4 * a->focal_length_m), &to->fixed);
+    if (what & HF_ANTENNA_POINTING) to->pointing_deg = pointing_deg(a, &q);
     if (!is_found) return HF_OK;
     hf_antenna_refocused_dBi(a, &pose, NULL, &q, &feed);
     judge(a, &q, pose.curvature_per_m, &to->refocused);
@@ -359,14 +367,30 @@ hf_status hf_antenna_measure(const hf_antenna *a, const hf_pattern_surface *shap
 
 /* ---- the antenna ---- */
 
+/* Makes the best fit to a shape the start of other fits. */
+static hf_status start_from(hf_antenna *a, const hf_pattern_surface *shape, double *scratch)
+{
+    hf_surface_pose pose;
+    bool is_found;
+    hf_antenna_points q = hf_antenna_points_of(a, shape, scratch);
+    a->start = hf_surface_pose_of_target(a->kind, a->focal_length_m, a->n_point, q.x);
+    HF_TRY(hf_antenna_fit(a, q.x, &pose, &is_found));
+    if (is_found) a->start = pose;
+    return HF_OK;
+}
+
+hf_status hf_antenna_near(const hf_antenna *a, const hf_pattern_surface *design, double *scratch, hf_antenna *near)
+{
+    *near = *a;
+    return a->is_too_coarse ? HF_OK : start_from(near, design, scratch);
+}
+
 hf_status hf_antenna_make(const hf_surface_settings *s, const hf_facets *facets, const double *position_m,
-                          const hf_pattern_surface *design, double frequency_Hz, hf_antenna *a)
+                          double frequency_Hz, hf_antenna *a)
 {
     const hf_pattern_surface target = {facets, position_m, NULL};
-    hf_surface_pose pose = {0};
     double *scratch;
     void *block;
-    bool is_found = false;
     *a = (hf_antenna){.facets = facets, .kind = s->kind, .focal_length_m = s->focal_length_m};
     hf_gain_beam_make(s, facets, position_m, frequency_Hz, &a->beam);
     a->is_too_coarse = a->beam.order >= HF_GAIN_ORDER_MOST;
@@ -388,10 +412,7 @@ hf_status hf_antenna_make(const hf_surface_settings *s, const hf_facets *facets,
         a->root_weight[i] = sqrt(fabs(hf_dot3(a->beam.co, current)));
     }
     find_middle(a, q.x, a->middle_m);
-    put_points(a, design ? design : &target, q.x);
-    a->start = hf_surface_pose_of_target(a->kind, a->focal_length_m, a->n_point, q.x);
-    hf_status status = hf_antenna_fit(a, q.x, &pose, &is_found);
-    if (is_found) a->start = pose;
+    hf_status status = start_from(a, &target, scratch);
     hf_arena_free_block(block);
     return status;
 }

@@ -42,30 +42,43 @@ typedef struct {
     double pointing_deg;
 } hf_antenna_figures;
 
-/* Prepares the figures of shapes of a net. position_m [n_node][3]: target positions. `design` is a shape to which later
- * shapes are similar, or NULL for the target positions. The best fits start from its best fit. The antenna borrows the
- * facets, which must not be empty. The section surface.pattern is not needed; without it, the feed is the default.
- * Call gsl_set_error_handler_off() before this function. Returns HF_OK or HF_NO_MEMORY. Free the antenna in every
- * case. */
+/* Prepares the figures of shapes of a net. position_m [n_node][3]: target positions. The antenna borrows the facets,
+ * which must not be empty. The section surface.pattern is not needed; without it, the feed is the default. Call
+ * gsl_set_error_handler_off() before this function. Returns HF_OK or HF_NO_MEMORY. Free the antenna in every case. */
 hf_status hf_antenna_make(const hf_surface_settings *surface, const hf_facets *facets, const double *position_m,
-                          const hf_pattern_surface *design, double frequency_Hz, hf_antenna *antenna);
+                          double frequency_Hz, hf_antenna *antenna);
 void hf_antenna_free(hf_antenna *antenna);
+
+/* Makes an antenna whose best fits start from that of another shape, to which later shapes are similar. It borrows the
+ * arrays of the first antenna; do not free it. scratch [hf_antenna_scratch]. Returns HF_OK or HF_NO_MEMORY. */
+hf_status hf_antenna_near(const hf_antenna *antenna, const hf_pattern_surface *design, double *scratch,
+                          hf_antenna *near);
 
 /* Returns the number of doubles of scratch memory, aligned to HF_ALIGNMENT, that hf_antenna_measure needs. */
 size_t hf_antenna_scratch(const hf_antenna *antenna);
 
-/* Computes the figures of a shape with the facets of the antenna. If a cable cannot hold the pull of the mesh, there is
+/* The groups of figures. */
+enum { HF_ANTENNA_REFOCUSED = 1, HF_ANTENNA_FIXED = 2, HF_ANTENNA_POINTING = 4, HF_ANTENNA_ALL = 7 };
+
+/* Computes the groups `what` of the figures of a shape with the facets of the antenna; the others are NaN. If a cable cannot hold the pull of the mesh, there is
  * no shape; do not call this function then. scratch [hf_antenna_scratch]. Returns HF_OK or HF_NO_MEMORY. Allocates
  * memory only if the best fit is not near that of the design. */
-hf_status hf_antenna_measure(const hf_antenna *antenna, const hf_pattern_surface *shape, double *scratch,
+hf_status hf_antenna_measure(const hf_antenna *antenna, unsigned what, const hf_pattern_surface *shape, double *scratch,
                              hf_antenna_figures *figures);
 
-/* Computes a bound of the change of each figure of a shape, to first order, if each node moves by at most
+/* Computes a bound of the change of the groups `what` of the figures of a shape, to first order, if each node moves by at most
  * position_error_m. A figure that is NaN has a bound that is NaN. The bounds of the refocused feed are also NaN if the
  * points do not determine all parameters of the best fit. The sags of a mesh count as constant. Returns HF_OK or
  * HF_NO_MEMORY. Takes about a hundred times as long as hf_antenna_measure. */
-hf_status hf_antenna_bound(const hf_antenna *antenna, const hf_pattern_surface *shape, double position_error_m,
-                           hf_antenna_figures *bound);
+hf_status hf_antenna_bound(const hf_antenna *antenna, unsigned what, const hf_pattern_surface *shape,
+                           double position_error_m, hf_antenna_figures *bound);
+
+/* Computes the derivatives of one figure by the positions of the nodes, gradient [n_node][3]: of the gain with one of
+ * the feeds, or of the pointing. The best fit and the feed follow the nodes; the sags of a mesh count as constant.
+ * *exists is false if there is no figure, or if the points do not determine the best fit. Returns HF_OK or
+ * HF_NO_MEMORY. */
+hf_status hf_antenna_gradient(const hf_antenna *antenna, unsigned group, const hf_pattern_surface *shape, int n_node,
+                              double *gradient, bool *exists);
 
 /* ---- the steps of a measurement ---- */
 
@@ -83,6 +96,11 @@ hf_antenna_points hf_antenna_points_of(const hf_antenna *antenna, const hf_patte
 
 /* Computes the currents of the points and their sums. */
 void hf_antenna_light(const hf_antenna *antenna, const hf_feed *feed, hf_antenna_points *points);
+
+/* Computes the vector from the refocused feed, which is longer_m further along z than the fixed feed, to the point at
+ * which it is aimed. x [3][n_point]: points in the frame of the best fit. */
+void hf_antenna_aim_vector(const hf_antenna *antenna, const double *x, double longer_m, const double *beside_m,
+                           double vector_m[3]);
 
 /* Turns the points into the frame of a best fit and illuminates them with the refocused feed, in this frame. Returns
  * the gain, dBi. beside_m [3], or NULL: the feed is aimed beside its aim by this vector. */

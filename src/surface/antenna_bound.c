@@ -166,7 +166,7 @@ static double bound_pointing_deg(const moves *b, const hf_antenna_points *q)
 
 /* ---- a shape ---- */
 
-hf_status hf_antenna_bound(const hf_antenna *a, const hf_pattern_surface *shape, double position_error_m,
+hf_status hf_antenna_bound(const hf_antenna *a, unsigned what, const hf_pattern_surface *shape, double position_error_m,
                            hf_antenna_figures *to)
 {
     moves b = {.a = a, .delta_m = position_error_m};
@@ -180,16 +180,18 @@ hf_status hf_antenna_bound(const hf_antenna *a, const hf_pattern_surface *shape,
     if (a->is_too_coarse) return HF_OK;
     HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(scratch, hf_antenna_scratch(a)), HF_ARRAY(x, 6 * n),
                            HF_ARRAY(b.moved, 6 * n), HF_ARRAY(b.side_m, n)));
-    hf_status status = hf_antenna_measure(a, shape, scratch, &is);
+    hf_status status = hf_antenna_measure(a, what, shape, scratch, &is);
     hf_antenna_points q = hf_antenna_points_of(a, shape, scratch);
     memcpy(x, q.x, 6 * n * sizeof *x);
     measure_sides(&b, shape);
     hf_antenna_light(a, &a->beam.feed, &q);
-    bound_spread(&b, 1 / (4 * a->focal_length_m), q.x, is.fixed.half_path_rms_m, &to->fixed);
-    to->fixed.gain_dBi = to->fixed.gain_loss_dB = bound_gain_dB(&b, &a->beam.feed, &q);
-    to->pointing_deg = bound_pointing_deg(&b, &q);
-    if (status == HF_OK) status = hf_antenna_fit(a, x, &pose, &is_found);
-    if (status == HF_OK && is_found && pose.is_whole) {
+    if (what & HF_ANTENNA_FIXED) {
+        bound_spread(&b, 1 / (4 * a->focal_length_m), q.x, is.fixed.half_path_rms_m, &to->fixed);
+        to->fixed.gain_dBi = to->fixed.gain_loss_dB = bound_gain_dB(&b, &a->beam.feed, &q);
+    }
+    if (what & HF_ANTENNA_POINTING) to->pointing_deg = bound_pointing_deg(&b, &q);
+    if (status == HF_OK && what & HF_ANTENNA_REFOCUSED) status = hf_antenna_fit(a, x, &pose, &is_found);
+    if (status == HF_OK && is_found && pose.n == HF_FIT_N_PARAMETER) {
         hf_feed feed;
         double more_dB = bound_refocusing_dB(&b, x, &pose, &q);
         hf_antenna_refocused_dBi(a, &pose, NULL, &q, &feed);

@@ -83,10 +83,10 @@ static hf_status measure_antenna(const hf_surface_settings *s, const hf_pattern_
     hf_antenna antenna;
     double *scratch;
     void *block = NULL;
-    hf_status status = hf_antenna_make(s, shape->facets, target_m, NULL,
+    hf_status status = hf_antenna_make(s, shape->facets, target_m,
                                        frequency_Hz > 0 ? frequency_Hz : HF_LIGHT_M_PER_S / LONG_WAVE_M, &antenna);
     if (status == HF_OK) status = HF_ARENA_ARRAYS(&block, HF_ARRAY(scratch, hf_antenna_scratch(&antenna)));
-    if (status == HF_OK) status = hf_antenna_measure(&antenna, shape, scratch, is);
+    if (status == HF_OK) status = hf_antenna_measure(&antenna, HF_ANTENNA_ALL, shape, scratch, is);
     hf_arena_free_block(block);
     hf_antenna_free(&antenna);
     return status;

@@ -4,7 +4,7 @@
  *       -> Gauss-Newton steps with this factor: turn, shift, curvature -> RMS at convergence
  *       -> if it does not converge or is not well inside the bounds: the caller uses hf_surface_fit_points
  *
- * Contents: a pose - rows of points - steps - changes of a fit */
+ * Contents: a pose - rows of points - steps - changes of a fit - derivatives of a fit */
 #include "surface/surface_near.h"
 
 #include "base/elementary.h"
@@ -26,7 +26,7 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
                                    const hf_fit_parameters *parameters)
 {
     const double angle[3] = {fit->rotation_x_rad, fit->rotation_y_rad, fit->rotation_z_rad};
-    hf_surface_pose q = {.is_whole = fit->converged && parameters->n == HF_FIT_N_PARAMETER,
+    hf_surface_pose q = {.n = fit->converged ? parameters->n : 0,
                          .kind = kind,
                          .center_m = {fit->center_x_m, fit->center_y_m, fit->center_z_m},
                          .shift_m = {fit->shift_x_m, fit->shift_y_m, fit->shift_z_m},
@@ -39,7 +39,7 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
 
 hf_surface_pose hf_surface_pose_of_target(hf_surface_kind kind, double focal_length_m, int n, const double *position_m)
 {
-    hf_surface_pose q = {.is_whole = true, .kind = kind, .curvature_per_m = 1 / (4 * focal_length_m)};
+    hf_surface_pose q = {.n = HF_FIT_N_PARAMETER, .kind = kind, .curvature_per_m = 1 / (4 * focal_length_m)};
     q.wanted_per_m = q.curvature_per_m;
     for (int d = 0; d < 3; d++) { /* centre and size as in hf_surface_fit_find */
         const double *x = position_m + (size_t)d * (size_t)n;
@@ -157,14 +157,26 @@ static bool take_normal(const problem *p, double factor[N * N], int pivot[N], do
     return hf_dense_factor(N, factor, pivot) == 0;
 }
 
-static void take_step(hf_surface_pose *q, const double step[N])
+/* A step in metres, radians and 1/m, in the frame of the surface. */
+typedef struct {
+    double move[3], turn[3], curve;
+} motion;
+
+static motion motion_of(const hf_surface_pose *q, const double step[N])
 {
     bool is_round = q->kind == HF_SURFACE_PARABOLOID;
-    double size = q->size_m, move[3] = {size * step[1], is_round ? size * step[2] : 0, size * step[0]}, turn[3];
+    double size = q->size_m;
+    motion m = {.move = {size * step[1], is_round ? size * step[2] : 0, size * step[0]}, .curve = step[N - 1] / size};
     for (int d = 0; d < 3; d++)
-        turn[d] = d < 2 || !is_round ? step[is_round ? 3 + d : 2 + d] : 0;
-    move_pose(q, move, turn);
-    q->curvature_per_m += step[N - 1] / size;
+        m.turn[d] = d < 2 || !is_round ? step[is_round ? 3 + d : 2 + d] : 0;
+    return m;
+}
+
+static void take_step(hf_surface_pose *q, const double step[N])
+{
+    motion m = motion_of(q, step);
+    move_pose(q, m.move, m.turn);
+    q->curvature_per_m += m.curve;
 }
 
 /* Returns true if the pose is so far inside the bounds that the reference also treats this fit as determined. */
@@ -181,7 +193,7 @@ bool hf_surface_pose_near(const hf_surface_pose *from, int n, const double *posi
     problem p = {*from, n, {position_m, position_m + n, position_m + 2 * (size_t)n}, root_weight};
     double factor[N * N], last[N + 1], step[N], weight = 0;
     int pivot[N];
-    if (!from->is_whole || !take_normal(&p, factor, pivot, last)) return false;
+    if (from->n < N || !take_normal(&p, factor, pivot, last)) return false;
     for (int i = 0; i < n; i++)
         weight += root_weight ? root_weight[i] * root_weight[i] : 1;
     for (int k = 0; k < STEPS_MAX; k++) { /* the matrix of the first pose serves all steps, because they are small */
@@ -238,4 +250,97 @@ double hf_surface_pose_bound(const hf_surface_pose *pose, int n, const double *p
         }
     }
     return sum * change_m;
+}
+
+/* ---- derivatives of a fit ---- */
+
+/* Computes the rate along a motion of the derivatives of r^2/2 by a point p in the frame of the surface, and by the
+ * curvature (returned). r = u w is the half-path error: u = z - c s with s = x^2 + y^2, and w = 1/(1 + 4 c^2 s). */
+static double rate_of_square(const hf_surface_pose *q, const motion *m, const double p[3], double rate[3])
+{
+    const double round_ = q->kind == HF_SURFACE_PARABOLOID, c = q->curvature_per_m;
+    const double s = p[0] * p[0] + round_ * p[1] * p[1], u = p[2] - c * s, w = 1 / (1 + 4 * c * c * s);
+    const double ws = -4 * c * c * w * w, wc = -8 * c * s * w * w, wss = -8 * c * c * w * ws;
+    const double wsc = -8 * c * w * (w + c * wc), wcc = -8 * s * w * (w + 2 * c * wc);
+    const double r = u * w, rs = u * ws - c * w, rc = u * wc - s * w;
+    const double rss = u * wss - 2 * c * ws, rsc = u * wsc - w - c * wc - s * ws, rcc = u * wcc - 2 * s * wc;
+    const double by[3] = {2 * p[0] * rs, round_ * 2 * p[1] * rs, w};
+    double arm[3], v[3], turned[3];
+    for (int d = 0; d < 3; d++)
+        arm[d] = p[d] - q->center_m[d];
+    hf_cross(m->turn, arm, v);
+    for (int d = 0; d < 3; d++)
+        v[d] += m->move[d];
+    const double ds = 2 * (p[0] * v[0] + round_ * p[1] * v[1]), dr = hf_dot3(by, v) + rc * m->curve;
+    const double drs = rss * ds + ws * v[2] + rsc * m->curve, drc = rsc * ds + wc * v[2] + rcc * m->curve;
+    const double by_rate[3] = {2 * (v[0] * rs + p[0] * drs), round_ * 2 * (v[1] * rs + p[1] * drs),
+                               ws * ds + wc * m->curve};
+    hf_cross(m->turn, by, turned);
+    for (int d = 0; d < 3; d++)
+        rate[d] = dr * by[d] + r * (by_rate[d] - turned[d]);
+    return dr * rc + r * drc;
+}
+
+/* Writes the derivatives by the parameters of a step. `by` contains those by shifts, turns and curvature. */
+static void put_parameters(const hf_surface_pose *q, const motion *by, double to[N])
+{
+    bool is_round = q->kind == HF_SURFACE_PARABOLOID;
+    to[0] = q->size_m * by->move[2];
+    to[1] = q->size_m * by->move[0];
+    if (is_round) to[2] = q->size_m * by->move[1];
+    for (int d = 0; d < (is_round ? 2 : 3); d++)
+        to[(is_round ? 3 : 2) + d] = by->turn[d];
+    to[N - 1] = by->curve / q->size_m;
+}
+
+/* Computes the rates along a step: of the sums of the derivatives, and with `by`, of those by the points, which are
+ * subtracted from by [3][n]. */
+static motion push_square(const hf_surface_pose *q, int n, const double *x, const double *root_weight,
+                          const double step[N], double *by)
+{
+    const motion m = motion_of(q, step);
+    motion sum = {0};
+    for (int i = 0; i < n; i++) {
+        double p[3] = {x[i], x[n + i], x[2 * (size_t)n + (size_t)i]}, rate[3], arm[3], turn[3];
+        double weight = root_weight[i] * root_weight[i];
+        sum.curve += weight * rate_of_square(q, &m, p, rate);
+        for (int d = 0; d < 3; d++)
+            arm[d] = p[d] - q->center_m[d];
+        hf_cross(arm, rate, turn);
+        for (int d = 0; d < 3; d++) {
+            sum.move[d] += weight * rate[d];
+            sum.turn[d] += weight * turn[d];
+            if (by) by[d * n + i] -= weight * rate[d];
+        }
+    }
+    return sum;
+}
+
+/* At the best fit, the gradient of the sum of squares by the parameters is 0. If the points move, the parameters move
+ * by - H^-1 (change of this gradient), where H is the matrix of second derivatives. */
+bool hf_surface_pose_pull(const hf_surface_pose *q, int n, const double *x, const double *root_weight,
+                          const double by_move[3], const double by_turn[3], double by_curvature, double *by)
+{
+    double matrix[N * N], column[N], by_step[N];
+    int pivot[N];
+    motion given = {.curve = by_curvature};
+    const bool is_round = q->kind == HF_SURFACE_PARABOLOID;
+    const bool is_fixed[N] = {[1] = q->n < N, [2] = is_round && q->n < N, [N - 1] = q->n < (is_round ? 4 : 5)};
+    if (q->n == 0) return false;
+    memcpy(given.move, by_move, sizeof given.move);
+    memcpy(given.turn, by_turn, sizeof given.turn);
+    put_parameters(q, &given, by_step);
+    for (int k = 0; k < N; k++) {
+        double step[N] = {0};
+        step[k] = 1;
+        motion rate = push_square(q, n, x, root_weight, step, NULL);
+        put_parameters(q, &rate, column);
+        for (int j = 0; j < N; j++)
+            matrix[j * N + k] = is_fixed[j] || is_fixed[k] ? j == k : column[j];
+        if (is_fixed[k]) by_step[k] = 0;
+    }
+    if (hf_dense_factor(N, matrix, pivot) != 0) return false;
+    hf_dense_solve(N, matrix, pivot, 1, by_step);
+    push_square(q, n, x, root_weight, by_step, by);
+    return true;
 }

@@ -7,7 +7,7 @@
 
 /* A fitted surface: z = curvature x^2 (+ y^2). In its frame, point p is at turn (p - center - shift) + center. */
 typedef struct {
-    bool is_whole; /* true: the points of this fit determine all parameters */
+    int n; /* parameters that the points of this fit determine, of HF_FIT_N_PARAMETER; 0: there is no fit */
     hf_surface_kind kind;
     double center_m[3], shift_m[3], turn[3][3];
     double curvature_per_m, wanted_per_m, size_m;
@@ -39,3 +39,10 @@ hf_surface_pose hf_surface_pose_moved(const hf_surface_pose *pose, const double 
  * hf_surface_pose_moved. Returns NaN if the points do not determine the parameters. */
 double hf_surface_pose_bound(const hf_surface_pose *pose, int n, const double *position_m, const double *root_weight,
                              const double gradient[HF_FIT_N_PARAMETER], double change_m);
+
+/* Adds to by [3][n], derivatives of a figure by points x [3][n] in the frame of their best fit, how the figure changes
+ * because the fit follows the points. by_move, by_turn, by_curvature: derivatives of the figure by the fit, whose steps
+ * turn the points about the centre and shift them, in this frame. Parameters that the points do not determine count as
+ * constant, among them the turn of a paraboloid about its axis. Returns false without a fit. */
+bool hf_surface_pose_pull(const hf_surface_pose *pose, int n, const double *x, const double *root_weight,
+                          const double by_move[3], const double by_turn[3], double by_curvature, double *by);

@@ -123,13 +123,13 @@ static double note(antenna_bench *b, shape_kind kind, double frequency_Hz, doubl
     hf_antenna antenna;
     hf_antenna_figures is;
     if (hf_facet_shape_take(&b->built.model, b->work.position_m, b->work.tension_N, &shape) != HF_OK ||
-        hf_antenna_make(&p->surface, &p->facets, b->target_m, NULL, frequency_Hz, &antenna) != HF_OK)
+        hf_antenna_make(&p->surface, &p->facets, b->target_m, frequency_Hz, &antenna) != HF_OK)
         bench_fail("antenna", "out of memory");
     double *scratch = NULL;
     void *block = NULL;
     const hf_pattern_surface surface = {&p->facets, shape.position_m, NULL};
     if (HF_ARENA_ARRAYS(&block, HF_ARRAY(scratch, hf_antenna_scratch(&antenna))) != HF_OK ||
-        hf_antenna_measure(&antenna, &surface, scratch, &is) != HF_OK)
+        hf_antenna_measure(&antenna, HF_ANTENNA_ALL, &surface, scratch, &is) != HF_OK)
         bench_fail("antenna", "out of memory");
     const hf_antenna_feed *feed[2] = {&is.refocused, &is.fixed};
     fprintf(b->csv, "%d,%d,%s,%.6g,%.6g", b->row, p->facets.n_facet, kind_word[kind], frequency_Hz / 1e9, size);

@@ -331,7 +331,7 @@ START_TEST(fit_from_one_nearby_knows_its_end)
             q[k] = p[k] + 0.1 * step;
         memcpy(q + N_GRID, p + N_GRID, 2 * N_GRID * sizeof *q);
         hf_surface_pose moved = pose_of(kind, 5, q, root);
-        ck_assert(moved.is_whole);
+        ck_assert_int_eq(moved.n, HF_FIT_N_PARAMETER);
         ck_assert(hf_surface_fit_near(&moved, N_GRID, q, root, &found) == (step == 1));
     }
     rough_points(&rng, kind, 8.5, 0, 1e-3, q, root);
@@ -339,14 +339,14 @@ START_TEST(fit_from_one_nearby_knows_its_end)
     memcpy(q, p, sizeof q);
     q[5] = NAN;
     ck_assert(!hf_surface_fit_near(&pose, N_GRID, q, root, &found));
-    pose.is_whole = false;
+    pose.n = 0;
     ck_assert(!hf_surface_fit_near(&pose, N_GRID, p, root, &found));
     double few[12] = {0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0.1};
     hf_surface_fit fit;
     hf_fit_parameters parameters;
     ck_assert_int_eq(hf_surface_fit_find(kind, 5, 4, few, NULL, &fit, &parameters), HF_OK);
     pose = hf_surface_pose_of(kind, 5, &fit, &parameters);
-    ck_assert(!pose.is_whole || !hf_surface_fit_near(&pose, 4, few, NULL, &found));
+    ck_assert(pose.n < HF_FIT_N_PARAMETER || !hf_surface_fit_near(&pose, 4, few, NULL, &found));
 }
 END_TEST
 
