@@ -392,6 +392,9 @@ typedef enum { HF_SEARCH_ON, HF_SEARCH_OFF } hf_constrains;
     X(PSI, "psi", "m", "RMS distance of the inner nodes from their target positions")                                  \
     X(SURFACE, "surface", "m", "RMS half-path error of the inner nodes")                                               \
     X(FACETS, "facets", "m", "RMS half-path error of the facets")                                                      \
+    X(GAIN_LOSS, "gain_loss", "dB", "loss of gain relative to the smooth target surface, by physical optics")          \
+    X(GAIN, "gain", "dBi", "gain by physical optics")                                                                  \
+    X(POINTING, "pointing", "deg", "angle between the main beam and the beam of the feed, by physical optics")         \
     X(TENSION, "tension", "N", "tension of each cable of the set")                                                     \
     X(RATIO, "ratio", "", "ratio of maximum to minimum tension in the set")                                            \
     X(SLACK, "slack_cables", "", "number of slack cables in the set")                                                  \
@@ -402,11 +405,13 @@ typedef enum { HF_SEARCH_ON, HF_SEARCH_OFF } hf_constrains;
 #define HF_REQUIRED_ENUMERATOR(name, word, unit, description) HF_REQUIRED_##name,
 typedef enum { HF_REQUIRED_FIGURES(HF_REQUIRED_ENUMERATOR) HF_REQUIRED_N_FIGURE } hf_required_figure;
 #undef HF_REQUIRED_ENUMERATOR
-/* Figures of a set of cables, and errors of the surface, which have a feed. */
+/* Figures of a set of cables, errors of the surface, figures at a frequency, and all figures that have a feed. */
 enum {
     HF_REQUIRED_OF_SET =
         1 << HF_REQUIRED_TENSION | 1 << HF_REQUIRED_RATIO | 1 << HF_REQUIRED_SLACK | 1 << HF_REQUIRED_MASS,
-    HF_REQUIRED_OF_SURFACE = 1 << HF_REQUIRED_SURFACE | 1 << HF_REQUIRED_FACETS
+    HF_REQUIRED_OF_SURFACE = 1 << HF_REQUIRED_SURFACE | 1 << HF_REQUIRED_FACETS,
+    HF_REQUIRED_OF_RADIO = 1 << HF_REQUIRED_GAIN_LOSS | 1 << HF_REQUIRED_GAIN | 1 << HF_REQUIRED_POINTING,
+    HF_REQUIRED_OF_FEED = HF_REQUIRED_OF_SURFACE | HF_REQUIRED_OF_RADIO
 };
 /* Returns whether a figure is one of these. */
 static inline bool hf_required_is_of(hf_required_figure figure, int figures)
@@ -421,7 +426,8 @@ extern const char *const hf_required_figure_unit[HF_REQUIRED_N_FIGURE];
 typedef struct {
     hf_required_figure figure;        /* bounded figure */
     char set[HF_SET_NAME_SIZE];       /* cables of the figures tension, ratio, slack_cables and mass; "": all */
-    hf_focus feed;                    /* feed of the figures surface and facets */
+    hf_focus feed;                    /* feed of errors of the surface and of figures at a frequency */
+    double frequency_Hz;              /* frequency of the figures gain_loss, gain and pointing; NaN: none */
     char load_case[HF_SET_NAME_SIZE]; /* "nominal", the name of a load case, or "all" for nominal and all load cases */
     double at_least, at_most;         /* bounds in the unit of the figure; NaN: not given */
     double within[2];                 /* both bounds in one key; infinite if not given. The bounds are then copied */

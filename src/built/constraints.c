@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "built/required_radio.h"
 #include "linalg/dot.h"
 #include "solve/newton_matrix.h"
 #include <hifdm/metrics.h>
@@ -37,6 +38,10 @@ typedef struct {
     hf_surface_design fits; /* best fits to the design */
     hf_surface_paths paths; /* errors of the present net, if has_paths */
     bool has_paths;
+    hf_antenna *antenna;       /* [n_antenna] antennas whose best fits start from the design */
+    hf_antenna_figures *radio; /* [n_antenna] figures of the present net, of the groups that are measured */
+    unsigned *has_radio;       /* [n_antenna] these groups */
+    double *gradient;          /* [n_column][n_node][3] of figures at a frequency at the present net */
     const hf_workspace *design;
     bool is_smooth;
     hf_status status;
@@ -122,6 +127,29 @@ static double taut_N(const hf_required_column *c, const hf_workspace *w, int mos
     return most > 0 ? brink_N(c, w, most, item) : hf_required_extreme_N(c, w->tension_N, true, item);
 }
 
+static hf_required_net net_of(const constraints_room *r, const hf_workspace *w)
+{
+    return (hf_required_net){r->c->model, w->position_m, w->tension_N};
+}
+
+/* Forgets what was measured of the net before. */
+static void begin_net(constraints_room *r)
+{
+    r->has_paths = false;
+    memset(r->has_radio, 0, (size_t)r->c->required->n_antenna * sizeof *r->has_radio);
+}
+
+/* Measures the group of figures of a column at a frequency, unless the present net already has it. */
+static void measure_radio(constraints_room *r, const hf_required_column *q, const hf_workspace *w)
+{
+    const hf_required_net net = net_of(r, w);
+    unsigned what[HF_REQUIREMENT_ROWS_MAX] = {0}, group = hf_required_radio_group(q);
+    if (r->has_radio[q->antenna] & group) return;
+    what[q->antenna] = group;
+    if (hf_required_radio_measure(r->c->required, r->antenna, what, &net, r->radio) != HF_OK) r->status = HF_NO_MEMORY;
+    r->has_radio[q->antenna] |= group;
+}
+
 /* Returns the figure of a column, and its cable or support in *item. NaN: it has no value. The errors of the surface
  * are measured once for each net, from the best fit to the design. */
 static double figure_of(constraints_room *r, int column, const hf_workspace *w, double *item)
@@ -134,11 +162,13 @@ static double figure_of(constraints_room *r, int column, const hf_workspace *w, 
             r->status = HF_NO_MEMORY;
         r->has_paths = true;
     }
+    if (q->antenna >= 0) measure_radio(r, q, w);
     const hf_required_shape shape = {.model = c->model,
                                      .position_m = w->position_m,
                                      .tension_N = w->tension_N,
                                      .displacement_m = w->displacement_m,
-                                     .paths = r->paths};
+                                     .paths = r->paths,
+                                     .radio = r->radio};
     return hf_required_figure_of(c->required, q, &shape, item);
 }
 
@@ -194,7 +224,7 @@ static void measure_net(void *context, int i_net, const hf_workspace *shape)
     bool is_high = false;
     double item;
     int i_sample, state = state_of_net(c, i_net, &i_sample);
-    r->has_paths = false;
+    begin_net(r);
     for (int k = 0; k < c->as.n; k++) {
         if (!is_about(c, k, state, i_sample >= 0)) continue;
         size_t at = place_of(c, k, i_sample < 0 ? 0 : i_sample);
@@ -242,9 +272,13 @@ static hf_status measure_design(void *room, const hf_workspace *w, bool is_smoot
     r->is_smooth = is_smooth;
     r->design = w;
     r->status = HF_OK;
-    r->has_paths = false;
+    begin_net(r);
     if (c->needs_surface)
         HF_TRY(hf_surface_design_make(c->surface, c->facets, c->model, w->position_m, w->tension_N, &r->fits));
+    if (c->needs_radio) {
+        const hf_required_net net = net_of(r, w);
+        HF_TRY(hf_required_radio_near(c->required, &net, r->antenna));
+    }
     for (size_t i = 0; i < n_distance; i++)
         r->distance[i] = -INFINITY;
     for (int k = 0; k < c->as.n; k++)
@@ -336,6 +370,18 @@ static double surface_rate(constraints_room *r, int column, const double *move_m
     return norm > 0 ? hf_dot(n, residual, r->residual_rate) / norm : 0;
 }
 
+/* Returns the rate of a figure at a frequency, whose gradient is known, for a motion [3][n_node] by row. */
+static double radio_rate(const constraints_room *r, int column, const double *move_m)
+{
+    const hf_model *m = r->c->model;
+    const double *gradient = r->gradient + 3 * (size_t)column * (size_t)m->n_node;
+    double sum = 0;
+    for (int row = 0; row < m->n_node; row++)
+        for (int d = 0; d < 3; d++)
+            sum += gradient[3 * m->node_of_row[row] + d] * move_m[d * m->n_node + row];
+    return sum;
+}
+
 /* Returns the rate of the figure of a column whose value belongs to `item`, from the rates `by` of the net. A surface
  * has been measured and linearised at this shape. */
 static double figure_rate(constraints_room *r, int column, double item, const hf_workspace *w,
@@ -349,6 +395,10 @@ static double figure_rate(constraints_room *r, int column, double item, const hf
     case HF_REQUIRED_SURFACE:
     case HF_REQUIRED_FACETS:
         return surface_rate(r, column, by->position_m);
+    case HF_REQUIRED_GAIN_LOSS:
+    case HF_REQUIRED_GAIN:
+    case HF_REQUIRED_POINTING:
+        return radio_rate(r, column, by->position_m);
     case HF_REQUIRED_TENSION:
     case HF_REQUIRED_SLACK: /* the tension of a slack cable stays 0, but that of the design shows the way out */
         return (w->tension_N[(int)item] > 0 ? by : by_design)->tension_N[(int)item];
@@ -381,6 +431,22 @@ static bool linearise_cloud(constraints_room *r, int column, const hf_workspace 
            hf_cloud_linearise(cloud) == HF_OK;
 }
 
+/* Prepares a column for derivatives at this shape. Returns false if it has none. */
+static bool linearise_column(constraints_room *r, int column, const hf_workspace *w)
+{
+    const hf_required *q = r->c->required;
+    const hf_required_net net = net_of(r, w);
+    bool exists = true;
+    if (is_of_surface(&q->column[column])) return linearise_cloud(r, column, w);
+    if (q->column[column].antenna >= 0 &&
+        hf_required_radio_gradient(q, &q->column[column], r->antenna, &net,
+                                   r->gradient + 3 * (size_t)column * (size_t)r->c->model->n_node, &exists) != HF_OK) {
+        r->status = HF_NO_MEMORY;
+        return false;
+    }
+    return exists;
+}
+
 /* Lists the constraints that depend on this net and have derivatives. A sample counts only in the load case in which it
  * is worst. */
 static int list_terms(constraints_room *r, int state, int i_sample, const hf_workspace *w)
@@ -398,7 +464,7 @@ static int list_terms(constraints_room *r, int state, int i_sample, const hf_wor
         distance_of(r, k, w, &is_high, &item);
         bool rises = is_high && q->row[c->row[k]].figure != HF_REQUIRED_SLACK;
         int column = is_high ? q->high[c->row[k]] : q->low[c->row[k]];
-        if (is_of_surface(&q->column[column]) && !linearise_cloud(r, column, w)) continue;
+        if (!linearise_column(r, column, w)) continue;
         r->list[n++] = (term){k, column, item, rises ? weight : -weight};
     }
     return n;
@@ -443,7 +509,7 @@ static hf_status linearise_design(void *room, int n_rate, hf_constraints_spread 
     const hf_built_constraints *c = r->c;
     const hf_objectives_nets *nets = c->nets ? &c->nets->as : NULL;
     const hf_workspace *shape;
-    r->has_paths = false;
+    begin_net(r);
     int n_all = nets ? nets->n_load_case + c->nets->n_sample_state * nets->n_sample : 0;
     memset(rate, 0, (size_t)c->as.n * (size_t)n_rate * sizeof *rate);
     int n = list_terms(r, 0, -1, r->design);
@@ -454,7 +520,7 @@ static hf_status linearise_design(void *room, int n_rate, hf_constraints_spread 
         hf_status status = nets->linearise(r->nets, i, &shape);
         if (status == HF_NO_MEMORY) return status;
         if (status != HF_OK) continue; /* a net without a shape has no derivatives */
-        r->has_paths = false;
+        begin_net(r);
         n = list_terms(r, state, i_sample, shape);
         HF_TRY(add_rates(r, n, shape, true, n_rate, spread, context, rate));
     }
@@ -515,8 +581,11 @@ static hf_status open_room(const hf_constraints *as, void **room)
     hf_status status = HF_ARENA_ARRAYS(
         &r.block, HF_ARRAY(kept, 1), HF_ARRAY(r.cloud, n_column), HF_ARRAY(r.residual, n_column * r.n_point),
         HF_ARRAY(r.residual_rate, r.n_point), HF_ARRAY(r.distance, n), HF_ARRAY(r.weight, n),
-        HF_ARRAY(r.worst_state, n), HF_ARRAY(r.order, n_sample), HF_ARRAY(r.list, c->as.n),
-        HF_ARRAY(r.move_m, 3 * many * (size_t)m->n_node), HF_ARRAY(r.tension_rate, many * (size_t)m->n_cable));
+        HF_ARRAY(r.antenna, c->required->n_antenna), HF_ARRAY(r.radio, c->required->n_antenna),
+        HF_ARRAY(r.has_radio, c->required->n_antenna),
+        HF_ARRAY(r.gradient, c->needs_radio ? 3 * n_column * (size_t)m->n_node : 0), HF_ARRAY(r.worst_state, n),
+        HF_ARRAY(r.order, n_sample), HF_ARRAY(r.list, c->as.n), HF_ARRAY(r.move_m, 3 * many * (size_t)m->n_node),
+        HF_ARRAY(r.tension_rate, many * (size_t)m->n_cable));
     *room = kept;
     if (status != HF_OK) return status;
     *kept = r;
@@ -528,6 +597,7 @@ static hf_status open_room(const hf_constraints *as, void **room)
 static double unit_of(const hf_required_column *column, double bound, const hf_model *m)
 {
     if (column->figure == HF_REQUIRED_SLACK) return HF_SLACK_RATIO * m->reference_N;
+    if (column->figure == HF_REQUIRED_GAIN) return 1; /* a ratio in dB, whose zero means nothing */
     if (bound != 0) return fabs(bound);
     return column->figure == HF_REQUIRED_TENSION || column->figure == HF_REQUIRED_PULL ? m->reference_N : 1;
 }
@@ -579,8 +649,10 @@ hf_status hf_built_constraints_make(const hf_required *q, const hf_model *m, con
     for (int i = 0; i < 4 * c->n_facet; i++)
         c->corner_row[i] = m->row_of_node[facets->corner[i]];
     c->as.unit = c->unit;
-    for (int k = 0; k < c->as.n; k++)
+    for (int k = 0; k < c->as.n; k++) {
         c->needs_surface |= hf_required_is_of(q->row[c->row[k]].figure, HF_REQUIRED_OF_SURFACE);
+        c->needs_radio |= hf_required_is_of(q->row[c->row[k]].figure, HF_REQUIRED_OF_RADIO);
+    }
     for (int state = 0; state < q->n_state; state++) {
         c->state_of_samples[state] = state == 0 ? 0 : -1;
         for (int s = 1; nets && s < nets->n_sample_state; s++)

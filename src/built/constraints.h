@@ -20,7 +20,7 @@ typedef struct {
     const hf_built_nets *nets; /* NULL: all constraints are about the design itself */
     const hf_surface_settings *surface;
     const hf_facets *facets;
-    bool needs_surface;
+    bool needs_surface, needs_radio;
     int n_facet, *corner_row;                 /* facets of the net; [n_facet][4] */
     int *row;                                 /* [as.n] row of each constraint */
     int *state;                               /* [as.n] its load case; -1: all of its row */

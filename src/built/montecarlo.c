@@ -14,8 +14,9 @@
 #include "built/montecarlo.h"
 
 #include "base/arena.h"
+#include "built/required_radio.h"
 #include "search/parallel.h"
-#include "surface/facet_mesh.h"
+#include "surface/antenna_shape.h"
 
 #include <math.h>
 
@@ -96,6 +97,9 @@ static hf_status make_load_case(hf_montecarlo *t, const double *attachment_move_
     if (status == HF_OK && to->batch && hf_required_needs_surface(t->required, true, to->state))
         status = hf_surface_design_make(t->surface, t->facets, &b->model, to->built.position_m, to->built.tension_N,
                                         &to->design);
+    if (status == HF_OK && to->batch)
+        status = hf_required_radio_near(
+            t->required, &(hf_required_net){&b->model, to->built.position_m, to->built.tension_N}, to->antenna);
     hf_workspace_free(&w);
     hf_arena_free_block(block);
     return status;
@@ -111,10 +115,13 @@ hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const do
     t->required = q;
     t->n_value = HF_TOLERANCE_COLUMNS + q->n_share + 2 * q->n_state * q->n_column;
     HF_TRY(HF_ARENA_ARRAYS(&t->required_block, HF_ARRAY(t->row, (size_t)t->n_chunk * (size_t)t->n_value),
-                           HF_ARRAY(t->load_case, n)));
+                           HF_ARRAY(t->load_case, n), HF_ARRAY(t->antenna, (1 + n) * q->n_antenna)));
+    HF_TRY(hf_required_radio_near(q, &(hf_required_net){&t->built->model, t->built->position_m, t->built->tension_N},
+                                  t->antenna));
     for (int state = 1; state < q->n_state; state++) {
         if (!(q->many >> state & 1u)) continue;
         t->load_case[t->n_load_case].state = state;
+        t->load_case[t->n_load_case].antenna = t->antenna + (1 + t->n_load_case) * q->n_antenna;
         HF_TRY(make_load_case(t, attachment_move_m, &t->load_case[t->n_load_case++], messages));
     }
     return HF_OK;
@@ -196,16 +203,11 @@ static double loss_dB(const hf_montecarlo *t, double half_path_rms_m)
 /* Measures the far-field loss of a sample. Pillows whose mesh tension exceeds what a cable can hold have none. */
 static hf_status measure_pattern(const hf_montecarlo *t, const hf_built_shape *is, double *value)
 {
-    hf_arena sags = {0};
-    hf_facet_shape shape;
-    double pull_ratio = 0, mesh_N_per_m = t->surface->mesh_tension_N_per_m, *sag_m = NULL;
-    hf_status status = hf_facet_shape_take(&t->built->model, is->position_m, is->tension_N, &shape);
-    if (status == HF_OK && mesh_N_per_m > 0)
-        status = hf_facet_mesh_make_sags(mesh_N_per_m, t->facets, &shape, &sags, &sag_m, &pull_ratio);
-    if (status == HF_OK && pull_ratio <= HF_FACET_PULL_MOST)
-        *value = hf_gain_loss_dB(t->beam, &(hf_pattern_surface){t->facets, shape.position_m, sag_m});
-    hf_arena_free(&sags);
-    hf_arena_free_block(shape.block);
+    hf_antenna_shape shape;
+    hf_status status = hf_antenna_shape_take(t->surface->mesh_tension_N_per_m, t->facets, &t->built->model,
+                                             is->position_m, is->tension_N, &shape);
+    if (status == HF_OK && shape.exists) *value = hf_gain_loss_dB(t->beam, &shape.surface);
+    hf_antenna_shape_free(&shape);
     return status;
 }
 
@@ -250,16 +252,27 @@ static double *row_of(const hf_montecarlo *t, long i)
     return t->row + (size_t)(i - t->first) * (size_t)t->n_value;
 }
 
-/* Measures what the rows of `requirements` need of a sample in one load case. All nodes count in psi. */
-static void measure_required(const hf_montecarlo *t, const hf_model *m, int state, const hf_built_shape *shape,
-                             const hf_form_result *r, const hf_surface_paths *paths, double *row)
+/* Measures what the rows of `requirements` need of a sample in one load case. All nodes count in psi. `antenna`: those
+ * whose best fits start from the shape without errors. */
+static void measure_required(hf_montecarlo *t, const hf_model *m, int state, const hf_antenna *antenna,
+                             const hf_built_shape *shape, const hf_form_result *r, const hf_surface_paths *paths,
+                             double *row)
 {
+    hf_antenna_figures radio[HF_REQUIREMENT_ROWS_MAX];
+    unsigned what[HF_REQUIREMENT_ROWS_MAX];
+    if (hf_required_radio_what(t->required, true, state, what) &&
+        hf_required_radio_measure(t->required, antenna, what,
+                                  &(hf_required_net){m, shape->position_m, shape->tension_N}, radio) != HF_OK) {
+        t->has_no_memory = true;
+        return;
+    }
     const hf_required_shape of = {.model = m,
                                   .position_m = shape->position_m,
                                   .tension_N = shape->tension_N,
                                   .displacement_m = shape->displacement_m,
                                   .n_loose = r->n_loose,
-                                  .paths = *paths};
+                                  .paths = *paths,
+                                  .radio = radio};
     hf_required_measure(t->required, true, state, &of, row + hf_montecarlo_value_at(t->required, state, false),
                         row + hf_montecarlo_value_at(t->required, state, true));
 }
@@ -283,7 +296,7 @@ static void take_sample(void *context, long i, const hf_built_shape *shape, cons
         min_N = fmin(min_N, shape->tension_N[e]);
     value[HF_TOLERANCE_MIN_TENSION] = min_N;
     if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, &paths, value);
-    if (t->required) measure_required(t, m, 0, shape, r, &paths, row);
+    if (t->required && !t->skips_surface) measure_required(t, m, 0, t->antenna, shape, r, &paths, row);
 }
 
 /* Measures the shape of sample i in a load case, as an hf_built_take. */
@@ -298,7 +311,7 @@ static void take_loaded(void *context, long i, const hf_built_shape *shape, cons
         hf_surface_measure_near(&c->design, t->surface, t->facets, &c->built.model, shape->position_m, shape->tension_N,
                                 &paths) != HF_OK)
         t->has_no_memory = true;
-    measure_required(t, &c->built.model, c->state, shape, r, &paths, row_of(t, i));
+    measure_required(t, &c->built.model, c->state, c->antenna, shape, r, &paths, row_of(t, i));
 }
 
 /* ---- first order ---- */

@@ -18,6 +18,7 @@ typedef struct {
     hf_built built;                /* the nominal net in this load case */
     hf_built_batch *batch;         /* NULL: the nominal net has no shape in this load case */
     hf_surface_design design;      /* starting values of the best fits of its samples */
+    hf_antenna *antenna;           /* [required->n_antenna] the same for figures at a frequency */
 } hf_montecarlo_load_case;
 
 /* Holds everything that samples need. It must not be moved in memory, because its members point to each other. */
@@ -54,6 +55,7 @@ typedef struct {
     void (*tell)(void *context, double scale);
     void *tell_context;
     const hf_required *required; /* NULL: nothing is required of samples */
+    hf_antenna *antenna;         /* [required->n_antenna] antennas of the samples without load case */
     int n_load_case;
     hf_montecarlo_load_case *load_case; /* [n_load_case] load cases that samples need */
     void *block, *required_block;

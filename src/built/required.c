@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/elementary.h"
+#include "built/required_radio.h"
 #include "net/cable_pick.h"
 #include "solve/newton_matrix.h"
 #include <hifdm/metrics.h>
@@ -23,11 +24,23 @@ static unsigned states_of(const hf_required *q, const hf_requirement_settings *r
     return 1u << state;
 }
 
+/* Returns the antenna of a row, and adds it if its frequency is new; -1 for a figure without a frequency. */
+static int antenna_of(hf_required *q, const hf_requirement_settings *r)
+{
+    int k = 0;
+    if (!hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO)) return -1;
+    while (k < q->n_antenna && q->frequency_Hz[k] != r->frequency_Hz)
+        k++;
+    if (k == q->n_antenna) q->frequency_Hz[q->n_antenna++] = r->frequency_Hz;
+    return k;
+}
+
 /* Returns the column that a bound of row r needs, and adds it if it is new. `cable` are the cables of its set. */
 static int column_of(hf_required *q, const hf_requirement_settings *r, bool is_minimum, int n_cable, const int *cable,
                      unsigned states)
 {
     hf_required_column c = {.figure = r->figure,
+                            .antenna = antenna_of(q, r),
                             .is_minimum = is_minimum && r->figure == HF_REQUIRED_TENSION,
                             .feed = r->feed,
                             .set = r->set,
@@ -36,8 +49,9 @@ static int column_of(hf_required *q, const hf_requirement_settings *r, bool is_m
     int k = 0;
     for (; k < q->n_column; k++) {
         const hf_required_column *old = &q->column[k];
-        if (old->figure == c.figure && old->is_minimum == c.is_minimum && old->feed == c.feed &&
-            old->n_cable == n_cable && !memcmp(old->cable, cable, (size_t)n_cable * sizeof *cable))
+        if (old->figure == c.figure && old->antenna == c.antenna && old->is_minimum == c.is_minimum &&
+            old->feed == c.feed && old->n_cable == n_cable &&
+            !memcmp(old->cable, cable, (size_t)n_cable * sizeof *cable))
             break;
     }
     if (k == q->n_column) q->column[q->n_column++] = c;
@@ -71,6 +85,9 @@ hf_status hf_required_create(int n, const hf_requirement_settings *row, const hf
 
 void hf_required_free(hf_required *q)
 {
+    for (int k = 0; k < q->n_antenna && q->antenna; k++)
+        hf_antenna_free(&q->antenna[k]);
+    hf_arena_free_block(q->antenna_block);
     hf_arena_free_block(q->block);
     *q = (hf_required){0};
 }
@@ -80,12 +97,14 @@ const char *hf_required_state_name(const hf_required *q, int state)
     return state ? q->load_cases->load_case[state - 1].name : "nominal";
 }
 
-const char *hf_required_column_name(const hf_required_column *c, char name[HF_REQUIRED_NAME_SIZE])
+const char *hf_required_column_name(const hf_required *q, const hf_required_column *c, char name[HF_REQUIRED_NAME_SIZE])
 {
-    bool has_feed = hf_required_is_of(c->figure, HF_REQUIRED_OF_SURFACE);
+    bool has_feed = hf_required_is_of(c->figure, HF_REQUIRED_OF_FEED);
     const char *extreme = c->figure != HF_REQUIRED_TENSION ? "" : c->is_minimum ? "_min" : "_max";
-    snprintf(name, HF_REQUIRED_NAME_SIZE, "%s%s%s%s%s%s", hf_required_figure_word[c->figure], extreme,
-             has_feed ? "_" : "", has_feed ? hf_focus_word[c->feed] : "", *c->set ? "_" : "", c->set);
+    int n = snprintf(name, HF_REQUIRED_NAME_SIZE, "%s%s%s%s%s%s", hf_required_figure_word[c->figure], extreme,
+                     has_feed ? "_" : "", has_feed ? hf_focus_word[c->feed] : "", *c->set ? "_" : "", c->set);
+    if (c->antenna >= 0)
+        snprintf(name + n, HF_REQUIRED_NAME_SIZE - (size_t)n, "_%.9gGHz", q->frequency_Hz[c->antenna] / 1e9);
     return name;
 }
 
@@ -219,6 +238,10 @@ double hf_required_figure_of(const hf_required *q, const hf_required_column *c, 
         return c->feed == HF_FIXED ? p->nodes_m : p->nodes_fit_m;
     case HF_REQUIRED_FACETS:
         return c->feed == HF_FIXED ? p->facets_m : p->facets_fit_m;
+    case HF_REQUIRED_GAIN_LOSS:
+    case HF_REQUIRED_GAIN:
+    case HF_REQUIRED_POINTING:
+        return hf_required_radio_of(c, s->radio);
     case HF_REQUIRED_TENSION:
         return hf_required_extreme_N(c, s->tension_N, c->is_minimum, item);
     case HF_REQUIRED_RATIO:
@@ -337,6 +360,10 @@ static double error_of(const hf_required *q, const hf_required_column *c, const 
     case HF_REQUIRED_FACETS:
     case HF_REQUIRED_DEFLECTION:
         return bound_m;
+    case HF_REQUIRED_GAIN_LOSS:
+    case HF_REQUIRED_GAIN:
+    case HF_REQUIRED_POINTING:
+        return hf_required_radio_of(c, s->radio_error);
     case HF_REQUIRED_TENSION:
         return set_error_N(c, s, bound_m);
     case HF_REQUIRED_RATIO:

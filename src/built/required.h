@@ -10,6 +10,7 @@
 #include <hifdm/load_cases.h>
 #include <hifdm/requirements.h>
 #include <hifdm/workspace.h>
+#include "surface/antenna.h"
 #include "surface/surface_measure.h"
 
 enum { HF_REQUIRED_COLUMNS = 2 * HF_REQUIREMENT_ROWS_MAX, HF_REQUIRED_STATES = 1 + HF_LOAD_CASES_MAX };
@@ -19,6 +20,7 @@ typedef struct {
     hf_required_figure figure;
     bool is_minimum; /* of `tension`: the minimum tension of the set, else the maximum */
     hf_focus feed;
+    int antenna;     /* of a figure at a frequency: the antenna that it needs; else -1 */
     const char *set; /* its name; "": all cables, or a figure without a set */
     int n_cable;
     const int *cable;       /* [n_cable] cables of the set, ascending */
@@ -38,7 +40,11 @@ typedef struct {
     const hf_scene *scene;
     const hf_load_cases *load_cases;
     const double *mass_kg_per_m; /* [n_cable]; NULL without a row about the mass */
-    void *block;
+    int n_antenna;               /* number of different frequencies of rows */
+    double frequency_Hz[HF_REQUIREMENT_ROWS_MAX];
+    hf_antenna *antenna;         /* [n_antenna] made by hf_required_radio_make */
+    double mesh_tension_N_per_m; /* of the mesh of the antennas */
+    void *block, *antenna_block;
 } hf_required;
 
 /* Prepares the rows of a case for a net. All arguments are borrowed; mass_kg_per_m is NULL unless a row needs it. The
@@ -50,8 +56,9 @@ void hf_required_free(hf_required *required);
 
 #define HF_REQUIRED_NAME_SIZE (HF_SET_NAME_SIZE + 32)
 
-/* Writes the name of a column, such as "tension_min_ties" or "facets_refocused". Returns `name`. */
-const char *hf_required_column_name(const hf_required_column *column, char name[HF_REQUIRED_NAME_SIZE]);
+/* Writes the name of a column, such as "tension_min_ties" or "gain_refocused_8GHz". Returns `name`. */
+const char *hf_required_column_name(const hf_required *required, const hf_required_column *column,
+                                    char name[HF_REQUIRED_NAME_SIZE]);
 
 /* Returns the name of load case `state`, "nominal" for 0. */
 const char *hf_required_state_name(const hf_required *required, int state);
@@ -63,7 +70,9 @@ typedef struct {
     const double *displacement_m; /* [3 n_attachment] displacements of the attachments by the forces of the net */
     const unsigned char *loose;   /* [n_node] nodes that psi leaves out; NULL: none */
     int n_loose;
-    hf_surface_paths paths;   /* errors of the surface; NaN if no column needs them */
+    hf_surface_paths paths; /* errors of the surface; NaN if no column needs them */
+    /* [n_antenna] figures at the frequencies, and bounds of their errors; may be NULL if no column needs them */
+    const hf_antenna_figures *radio, *radio_error;
     const hf_workspace *work; /* laws and target values in effect, for error bounds; may be NULL without them */
 } hf_required_shape;
 

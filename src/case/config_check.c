@@ -4,10 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define WHAT_SIZE 512
-
 /* Returns true if exactly one section makes the net. Otherwise `what` describes the fault of the section scene. */
-static bool one_section_makes_the_net(const hf_case *c, char what[WHAT_SIZE])
+static bool one_section_makes_the_net(const hf_case *c, char what[HF_CONFIG_WHAT_SIZE])
 {
     int n_present = 0;
     char present[256] = "", all[256] = "";
@@ -26,9 +24,9 @@ static bool one_section_makes_the_net(const hf_case *c, char what[WHAT_SIZE])
             snprintf(present + n, sizeof present - n, "%s%s", n_present++ ? " and " : "", source[i].name);
     }
     if (n_present)
-        snprintf(what, WHAT_SIZE, "has both %s; keep one", present);
+        snprintf(what, HF_CONFIG_WHAT_SIZE, "has both %s; keep one", present);
     else
-        snprintf(what, WHAT_SIZE, "needs either %s", all);
+        snprintf(what, HF_CONFIG_WHAT_SIZE, "needs either %s", all);
     return n_present == 1;
 }
 
@@ -83,19 +81,20 @@ static bool has_section_of(const hf_case *c, const char *key)
 /* Lower bound of a frequency, a wavelength of 300 m. A number in GHz or MHz without its exponent is far below it. */
 #define LEAST_HZ 1e6
 
-static const char *frequency_fault(double frequency_Hz, char what[WHAT_SIZE])
+const char *hf_config_frequency_fault(double frequency_Hz, char what[HF_CONFIG_WHAT_SIZE])
 {
     if (!(frequency_Hz > 0 && frequency_Hz < LEAST_HZ)) return NULL; /* 0 or NaN: not given */
-    snprintf(what, WHAT_SIZE, "is %g Hz, and below 1 MHz there are no reflectors: was GHz meant? 6 GHz is 6e9",
-             frequency_Hz);
+    snprintf(what, HF_CONFIG_WHAT_SIZE,
+             "is %g Hz, and below 1 MHz there are no reflectors: was GHz meant? 6 GHz is 6e9", frequency_Hz);
     return what;
 }
 
 static void check_frequencies(const hf_double_list *frequency_Hz, hf_config_faults *f)
 {
-    char what[WHAT_SIZE];
+    char what[HF_CONFIG_WHAT_SIZE];
     for (int i = 0; i < frequency_Hz->n && !f->failed; i++)
-        if (frequency_fault(frequency_Hz->value[i], what)) hf_config_fault_of(f, "surface.frequencies_Hz", what);
+        if (hf_config_frequency_fault(frequency_Hz->value[i], what))
+            hf_config_fault_of(f, "surface.frequencies_Hz", what);
 }
 
 static void check_pattern(const hf_case *c, hf_config_faults *f)
@@ -201,7 +200,7 @@ static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
 void hf_config_check_use(hf_config_faults *f, const char *list, int row, const char *key, int kind,
                          const char *const *kind_word, unsigned users)
 {
-    char path[HF_KEY_SIZE], what[WHAT_SIZE];
+    char path[HF_KEY_SIZE], what[HF_CONFIG_WHAT_SIZE];
     snprintf(path, sizeof path, "%s.%d.%s", list, row, key);
     if (users & 1u << kind || !hf_config_is_given(f, path)) return;
     int used = snprintf(what, sizeof what, "has no meaning for %s, only for", kind_word[kind]), n = 0;
@@ -260,7 +259,7 @@ static void check_objectives(const char *list, int n_objective, const hf_objecti
                {"along", SURFACES},
                {"fit", SURFACES},
                {"frequency_Hz", 1u << HF_FIGURE_GAIN}};
-    char what[WHAT_SIZE];
+    char what[HF_CONFIG_WHAT_SIZE];
     for (int i = 0; i < n_objective; i++) {
         const hf_objective_settings *g = &objective[i];
         for (size_t k = 0; k < sizeof use / sizeof *use; k++)
@@ -272,7 +271,7 @@ static void check_objectives(const char *list, int n_objective, const hf_objecti
             hf_config_fault_in_row(f, list, i, "target", "of length must be above 0");
         if (g->figure == HF_FIGURE_MASS && isnan(g->mass_kg_per_m))
             hf_config_fault_in_row(f, list, i, "mass_kg_per_m", "is missing: the mass of the cables");
-        if (g->figure == HF_FIGURE_GAIN && frequency_fault(g->frequency_Hz, what))
+        if (g->figure == HF_FIGURE_GAIN && hf_config_frequency_fault(g->frequency_Hz, what))
             hf_config_fault_in_row(f, list, i, "frequency_Hz", what);
     }
 }
@@ -332,7 +331,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
 {
     const hf_optimize_settings *o = &c->optimize;
     const char *key;
-    char what[WHAT_SIZE];
+    char what[HF_CONFIG_WHAT_SIZE];
     if (!one_section_makes_the_net(c, what)) hf_config_fault_of(f, "scene", what);
     for (int i = 0; i < hf_n_field; i++)
         if (!hf_field_table[i].default_value && has_section_of(c, hf_field_table[i].path) && !*hf_config_where(f, i))
@@ -376,11 +375,7 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
 void hf_config_complete(hf_case *c)
 {
     c->has_truss |= c->has_truss_import || c->has_truss_ring;
-    for (int i = 0; i < c->n_requirement; i++) {
-        hf_requirement_settings *r = &c->requirement[i];
-        if (isfinite(r->within[0])) r->at_least = r->within[0];
-        if (isfinite(r->within[1])) r->at_most = r->within[1];
-    }
+    hf_config_complete_requirements(c);
     if (!c->has_surface) return;
     const char *key;
     hf_surface_settings known = hf_config_known_surface(c, &key);

@@ -12,6 +12,11 @@ void hf_config_check_built(const hf_case *settings, hf_config_faults *faults);
 /* Reports faults in the rows of `requirements`. */
 void hf_config_check_requirements(const hf_case *settings, hf_config_faults *faults);
 
+enum { HF_CONFIG_WHAT_SIZE = 512 };
+
+/* Returns the fault of a frequency that is probably in GHz, for the end of a message, or NULL. */
+const char *hf_config_frequency_fault(double frequency_Hz, char what[HF_CONFIG_WHAT_SIZE]);
+
 /* Reports a key in a row of a kind that does not use it. `users` has one bit for each kind that uses it. */
 void hf_config_check_use(hf_config_faults *faults, const char *list, int row, const char *key, int kind,
                          const char *const *kind_word, unsigned users);
@@ -22,6 +27,9 @@ void hf_config_check_nets(const hf_case *settings, const char *list, int n_objec
 
 /* Reports a set name in a row that no set can have. */
 void hf_config_check_set(hf_config_faults *faults, const char *list, int row, const char *set);
+
+/* Sets the bounds, feeds and frequencies of rows of `requirements` that follow from other keys. */
+void hf_config_complete_requirements(hf_case *settings);
 
 /* Sets members that follow from the existing sections: whether there is a truss, and values of the surface that the
  * case does not give and the generator of the net determines. */

@@ -21,6 +21,7 @@ static void bounds_of(const hf_requirement_settings *r, double bound[2])
 static void check_bounds(int i, const hf_requirement_settings *r, hf_config_faults *f)
 {
     double bound[2], least = r->figure == HF_REQUIRED_RATIO ? 1 : 0; /* smallest possible value of a figure */
+    bool is_in_dB = r->figure == HF_REQUIRED_GAIN || r->figure == HF_REQUIRED_GAIN_LOSS; /* any value is possible */
     bool has_within = isfinite(r->within[0]) || isfinite(r->within[1]);
     bounds_of(r, bound);
     if (has_within && !(isnan(r->at_least) && isnan(r->at_most))) {
@@ -31,7 +32,7 @@ static void check_bounds(int i, const hf_requirement_settings *r, hf_config_faul
         hf_config_fault_in_row(f, list, i, "figure", "has no bound; give at_most, at_least or within");
     if (bound[0] > bound[1])
         hf_config_fault_in_row(f, list, i, has_within ? "within" : "at_least", "must not be above at_most");
-    else if (bound[1] < least)
+    else if (bound[1] < least && !is_in_dB)
         hf_config_fault_in_row(f, list, i, has_within ? "within" : "at_most",
                                least == 1 ? "is below 1, the ratio of equal tensions"
                                           : "is below 0, which no net can reach");
@@ -79,11 +80,23 @@ static void check_share(const hf_case *c, int i, const hf_requirement_settings *
     }
 }
 
+/* Returns the frequency of a row; NaN: it has none. The default is the highest frequency of the surface. */
+static double frequency_of(const hf_case *c, const hf_requirement_settings *r)
+{
+    const hf_double_list *list_Hz = &c->surface.frequencies_Hz;
+    double highest_Hz = r->frequency_Hz;
+    for (int k = 0; k < list_Hz->n && isnan(r->frequency_Hz); k++)
+        highest_Hz = fmax(highest_Hz, list_Hz->value[k]);
+    return highest_Hz;
+}
+
 /* Returns whether two rows bound the same figure of the same cables. An empty set stands for all cables. */
-static bool is_same_quantity(const hf_requirement_settings *a, const hf_requirement_settings *b)
+static bool is_same_quantity(const hf_case *c, const hf_requirement_settings *a, const hf_requirement_settings *b)
 {
     const char *of_a = *a->set ? a->set : "all", *of_b = *b->set ? b->set : "all";
-    return a->figure == b->figure && !strcmp(of_a, of_b) && a->feed == b->feed;
+    bool has_frequency = hf_required_is_of(a->figure, HF_REQUIRED_OF_RADIO);
+    return a->figure == b->figure && !strcmp(of_a, of_b) && a->feed == b->feed &&
+           (!has_frequency || frequency_of(c, a) == frequency_of(c, b));
 }
 
 /* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. A row with a
@@ -100,7 +113,7 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
              is_same_case = !strcmp(r->load_case, q->load_case),
              overlaps = is_same_case || !strcmp(r->load_case, "all") || !strcmp(q->load_case, "all");
         bounds_of(q, other);
-        if (!is_same_quantity(r, q) || !overlaps) continue;
+        if (!is_same_quantity(c, r, q) || !overlaps) continue;
         if (is_same_case && is_same_share &&
             ((isfinite(mine[0]) && isfinite(other[0])) || (isfinite(mine[1]) && isfinite(other[1])))) {
             snprintf(what, sizeof what, "is required by row %d already; keep one of the rows", k);
@@ -112,10 +125,26 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
     }
 }
 
+/* Reports what a figure at a frequency lacks. */
+static void check_radio(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
+{
+    char text[HF_CONFIG_WHAT_SIZE];
+    const char *what = hf_config_frequency_fault(r->frequency_Hz, text);
+    if (what) hf_config_fault_in_row(f, list, i, "frequency_Hz", what);
+    if (!hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO)) return;
+    if (c->has_surface && isnan(frequency_of(c, r)))
+        hf_config_fault_in_row(f, list, i, "figure",
+                               "needs a frequency; add frequency_Hz to this row, or surface.frequencies_Hz");
+    if (r->figure == HF_REQUIRED_POINTING && r->feed == HF_REFOCUSED && hf_config_is_given_in_row(f, list, i, "feed"))
+        hf_config_fault_in_row(f, list, i, "feed",
+                               "cannot be refocused for pointing, because that feed follows the beam; remove this key");
+}
+
 static void check_needs(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
 {
-    if (hf_required_is_of(r->figure, HF_REQUIRED_OF_SURFACE) && !c->has_surface)
+    if (hf_required_is_of(r->figure, HF_REQUIRED_OF_FEED) && !c->has_surface)
         hf_config_fault_in_row(f, list, i, "figure", "is not measured; add a section surface");
+    check_radio(c, i, r, f);
     if (r->figure == HF_REQUIRED_DEFLECTION && !(c->has_truss || c->has_truss_import || c->has_truss_ring))
         hf_config_fault_in_row(f, list, i, "figure", "needs a section truss");
     if (r->figure == HF_REQUIRED_MASS && (strcmp(r->load_case, "nominal") != 0 || !isnan(r->share)))
@@ -128,12 +157,28 @@ void hf_config_check_requirements(const hf_case *c, hf_config_faults *f)
     for (int i = 0; i < c->n_requirement; i++) {
         const hf_requirement_settings *r = &c->requirement[i];
         hf_config_check_use(f, list, i, "set", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_SET);
-        hf_config_check_use(f, list, i, "feed", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_SURFACE);
+        hf_config_check_use(f, list, i, "feed", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_FEED);
+        hf_config_check_use(f, list, i, "frequency_Hz", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_RADIO);
         hf_config_check_set(f, list, i, r->set);
         check_bounds(i, r, f);
         check_load_case(c, i, r, f);
         check_share(c, i, r, f);
         check_needs(c, i, r, f);
         check_against_earlier(c, i, f);
+    }
+}
+
+void hf_config_complete_requirements(hf_case *c)
+{
+    char key[HF_KEY_SIZE], location[HF_LOCATION_SIZE];
+    for (int i = 0; i < c->n_requirement; i++) {
+        hf_requirement_settings *r = &c->requirement[i];
+        if (isfinite(r->within[0])) r->at_least = r->within[0];
+        if (isfinite(r->within[1])) r->at_most = r->within[1];
+        if (!hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO)) continue;
+        r->frequency_Hz = frequency_of(c, r);
+        snprintf(key, sizeof key, "%s.%d.feed", list, i);
+        if (r->figure == HF_REQUIRED_POINTING && !hf_config_location(c, key, location, sizeof location))
+            r->feed = HF_FIXED;
     }
 }

@@ -228,6 +228,7 @@ static const hf_field requirement_field[] = {
     {"figure", HF_FIELD_WORD, IN(requirement, figure), 0, 0, NULL, "", hf_required_figure_word},
     {"set", HF_FIELD_TEXT, IN(requirement, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
     {"feed", HF_FIELD_WORD, IN(requirement, feed), 0, 0, "refocused", "", hf_focus_word},
+    {"frequency_Hz", HF_FIELD_DOUBLE, IN(requirement, frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL},
     {"load_case", HF_FIELD_TEXT, IN(requirement, load_case), 1, HF_SET_NAME_SIZE, "nominal", "", NULL},
     {"at_least", HF_FIELD_DOUBLE, IN(requirement, at_least), -BIG, BIG, "", "", NULL},
     {"at_most", HF_FIELD_DOUBLE, IN(requirement, at_most), -BIG, BIG, "", "", NULL},

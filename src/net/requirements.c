@@ -21,9 +21,11 @@ hf_verdict hf_requirements_verdict(int n, const hf_requirement_verdict *verdict)
 
 const char *hf_requirement_name(const hf_requirement_settings *r, char *text, size_t size)
 {
-    bool has_feed = hf_required_is_of(r->figure, HF_REQUIRED_OF_SURFACE);
+    bool has_feed = hf_required_is_of(r->figure, HF_REQUIRED_OF_FEED);
     int n = snprintf(text, size, "%s", hf_required_figure_word[r->figure]);
     if (*r->set && (size_t)n < size) n += snprintf(text + n, size - (size_t)n, " of %s", r->set);
+    if (hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO) && (size_t)n < size)
+        n += snprintf(text + n, size - (size_t)n, " at %g GHz", r->frequency_Hz / 1e9);
     if (has_feed && (size_t)n < size) n += snprintf(text + n, size - (size_t)n, ", %s", hf_focus_word[r->feed]);
     if (strcmp(r->load_case, "nominal") != 0 && (size_t)n < size)
         n += snprintf(text + n, size - (size_t)n, !strcmp(r->load_case, "all") ? ", all load cases" : ", %s",

@@ -167,7 +167,8 @@ static hf_status run_load_case(const hf_problem *p, int k, hf_load_case_stage *c
     }
     if (status == HF_OK) status = keep_shape(p, c, store, has_truss ? &truss : NULL, s, messages);
     if (status == HF_OK && requirements)
-        hf_requirements_stage_take(requirements, 1 + k, &loaded, &c->workspace, &s->result, &s->surface);
+        status =
+            hf_requirements_stage_take(requirements, 1 + k, &loaded, &c->workspace, &s->result, &s->surface, messages);
     hf_carrier_state_free(&truss);
     return status;
 }

@@ -9,6 +9,7 @@
 
 #include "base/arena.h"
 #include "case/config_fault.h"
+#include "built/required_radio.h"
 #include "net/cable_pick.h"
 #include "run/stages.h"
 #include "run/tolerance_stage.h"
@@ -36,6 +37,18 @@ static hf_status check_masses(const hf_problem *p, int i, const int *cable, int 
                     n_unknown == 1 ? " has" : "s have", p->scene.cable_id[first]);
 }
 
+static hf_status check_frequency(const hf_problem *p, int i, hf_messages *messages)
+{
+    char place[HF_LOCATION_SIZE];
+    hf_gain_beam beam;
+    double frequency_Hz = p->settings.requirement[i].frequency_Hz;
+    hf_gain_beam_make(&p->surface, &p->facets, p->scene.position_m, frequency_Hz, &beam);
+    if (beam.order < HF_GAIN_ORDER_MOST) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s: hifdm cannot compute this figure at %g GHz, because " HF_GAIN_TOO_COARSE,
+                    hf_config_place(&p->settings, place, "requirements.%d.figure", i), frequency_Hz / 1e9);
+}
+
 static hf_status check_row(const hf_problem *p, int i, int *cable, hf_messages *messages)
 {
     const hf_requirement_settings *r = &p->settings.requirement[i];
@@ -43,10 +56,12 @@ static hf_status check_row(const hf_problem *p, int i, int *cable, hf_messages *
     int n = hf_cable_pick_some(&p->scene, r->set, hf_config_place(&p->settings, place, "requirements.%d.set", i), cable,
                                messages);
     if (n == 0) return HF_BAD_CASE;
-    if (r->figure == HF_REQUIRED_FACETS && p->facets.n_facet == 0)
+    bool is_radio = hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO);
+    if ((r->figure == HF_REQUIRED_FACETS || is_radio) && p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE,
                         "%s: this net has no facets. To bound the errors of the nodes, use the figure surface",
                         hf_config_place(&p->settings, place, "requirements.%d.figure", i));
+    if (is_radio) HF_TRY(check_frequency(p, i, messages));
     return r->figure == HF_REQUIRED_MASS ? check_masses(p, i, cable, n, messages) : HF_OK;
 }
 
@@ -74,6 +89,7 @@ hf_status hf_requirements_stage_rows(const hf_problem *p, hf_material *masses, h
     if (needs_mass) HF_TRY(hf_config_material(c, &p->scene, masses, messages));
     hf_status status =
         hf_required_create(c->n_requirement, c->requirement, &p->scene, &p->load_cases, masses->mass_kg_per_m, q);
+    if (status == HF_OK) status = hf_required_radio_make(q, &p->surface, &p->facets, p->scene.position_m);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the requirements");
 }
 
@@ -97,10 +113,13 @@ void hf_requirements_stage_free(hf_requirements_stage *q)
     *q = (hf_requirements_stage){0};
 }
 
-void hf_requirements_stage_take(hf_requirements_stage *q, int state, const hf_model *m, const hf_workspace *w,
-                                const hf_form_result *r, const hf_surface_measures *s)
+hf_status hf_requirements_stage_take(hf_requirements_stage *q, int state, const hf_model *m, const hf_workspace *w,
+                                     const hf_form_result *r, const hf_surface_measures *s, hf_messages *messages)
 {
     const hf_required *of = &q->required;
+    const hf_required_net net = {m, w->position_m, w->tension_N};
+    hf_antenna_figures radio[HF_REQUIREMENT_ROWS_MAX], radio_error[HF_REQUIREMENT_ROWS_MAX];
+    unsigned what[HF_REQUIREMENT_ROWS_MAX];
     size_t at = (size_t)state * (size_t)of->n_column;
     hf_required_shape shape = {.model = m,
                                .position_m = w->position_m,
@@ -109,8 +128,14 @@ void hf_requirements_stage_take(hf_requirements_stage *q, int state, const hf_mo
                                .loose = r->n_loose ? w->loose : NULL,
                                .n_loose = r->n_loose,
                                .paths = {NAN, NAN, NAN, NAN},
+                               .radio = radio,
+                               .radio_error = radio_error,
                                .work = w};
-    if (!(of->nominal >> state & 1u)) return;
+    if (!(of->nominal >> state & 1u)) return HF_OK;
+    if (hf_required_radio_what(of, false, state, what) &&
+        (hf_required_radio_measure(of, of->antenna, what, &net, radio) != HF_OK ||
+         hf_required_radio_bound(of, what, &net, r->position_bound_m, radio_error) != HF_OK))
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the requirements");
     if (s->is_measured) {
         double fit_m = s->fit.converged ? s->fit.half_path_rms_m : (double)NAN;
         shape.paths =
@@ -118,6 +143,7 @@ void hf_requirements_stage_take(hf_requirements_stage *q, int state, const hf_mo
     }
     hf_required_measure(of, false, state, &shape, q->value + at, q->item + at);
     hf_required_bound_errors(of, state, &shape, r->position_bound_m, q->value + at, q->error + at);
+    return HF_OK;
 }
 
 /* ---- verdicts ---- */
@@ -177,7 +203,7 @@ hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
     if (hf_tolerance_stage_is_task(r->request) || !r->shape) return HF_OK;
     hf_stage stage = hf_store_result_stage(s);
     const hf_stage_summary *result = &s->stage[stage == HF_N_STAGE ? HF_STAGE_FORM : stage];
-    hf_requirements_stage_take(q, 0, &r->problem.model, r->shape, &result->result, &result->surface);
+    HF_TRY(hf_requirements_stage_take(q, 0, &r->problem.model, r->shape, &result->result, &result->surface, messages));
     if (of->n_share == 0) HF_TRY(make_verdicts(q, s, messages));
     for (int i = 0; i < of->n; i++) {
         hf_requirement_verdict *v = &s->requirement[i];

@@ -30,10 +30,10 @@ hf_status hf_requirements_stage_open(const hf_problem *problem, hf_requirements_
 void hf_requirements_stage_free(hf_requirements_stage *stage);
 
 /* Measures the design in a load case: its shape in the workspace of the model, the errors of its surface, and the bound
- * on its position errors, m (NaN: not known). */
-void hf_requirements_stage_take(hf_requirements_stage *stage, int state, const hf_model *model,
-                                const hf_workspace *workspace, const hf_form_result *result,
-                                const hf_surface_measures *surface);
+ * on its position errors, m (NaN: not known). Returns HF_OK or HF_NO_MEMORY, with a message. */
+hf_status hf_requirements_stage_take(hf_requirements_stage *stage, int state, const hf_model *model,
+                                     const hf_workspace *workspace, const hf_form_result *result,
+                                     const hf_surface_measures *surface, hf_messages *messages);
 
 /* Gives the verdicts on the rows with a share. Returns the status of hf_statistics_judge. */
 hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *stage, const hf_montecarlo *montecarlo,

@@ -17,9 +17,10 @@ typedef struct {
 #define REAL(name, member, description) HF_LAYOUT_MEMBER(judged, name, of.member, REAL, "", description)
 static const hf_layout_field judged_field[] = {
     CHARS("figure", figure, "what the row bounds") CHARS("set", of.row.set, "cables; empty: all") CHARS(
-        "feed", feed, "feed of the figures surface and facets") CHARS("load_case", of.row.load_case,
-                                                                      "nominal, all or the name of a load case")
-        REAL("at_least", row.at_least, "minimum, in the unit of the figure; NaN: none")
+        "feed", feed, "feed of figures of the surface") REAL("frequency_Hz", row.frequency_Hz,
+                                                             "of gain_loss, gain and pointing; NaN: none")
+        CHARS("load_case", of.row.load_case, "nominal, all or the name of a load case") REAL(
+            "at_least", row.at_least, "minimum, in the unit of the figure; NaN: none")
             REAL("at_most", row.at_most, "maximum, in the unit of the figure; NaN: none") REAL(
                 "share", row.share, "required share of the samples; 0: none is required; NaN: the nominal net")
                 CHARS("verdict", verdict, "pass, fail, undecided or none") REAL("value", value,

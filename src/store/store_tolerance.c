@@ -80,7 +80,7 @@ static hf_status write_required(hf_hdf5 *io, const hf_montecarlo *t, const hf_st
             if (!(q->column[k].many >> state & 1u)) continue;
             const char *units = hf_required_figure_unit[q->column[k].figure];
             column[n].array =
-                (hf_hdf5_array){hf_required_column_name(&q->column[k], name[n]), HF_KIND_REAL, 1, {0}, units,
+                (hf_hdf5_array){hf_required_column_name(q, &q->column[k], name[n]), HF_KIND_REAL, 1, {0}, units,
                                 "figure of each sample in this load case"};
             column[n++].column = (int)hf_montecarlo_value_at(q, state, false) + k;
         }

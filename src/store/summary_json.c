@@ -276,6 +276,7 @@ static void write_verdicts(const hf_summary *s, hf_json *j)
         hf_json_text(j, "figure", hf_required_figure_word[v->row.figure]);
         hf_json_text(j, "set", v->row.set);
         hf_json_text(j, "feed", hf_focus_word[v->row.feed]);
+        hf_json_number(j, "frequency_Hz", v->row.frequency_Hz);
         hf_json_text(j, "load_case", v->row.load_case);
         hf_json_number(j, "at_least", v->row.at_least);
         hf_json_number(j, "at_most", v->row.at_most);

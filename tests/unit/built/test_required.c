@@ -65,7 +65,7 @@ START_TEST(columns_are_measured_once)
                     {"slack_cables", 2, 0}, {"facets_refocused", 7, 0}, {"facets_fixed", 0, 2}};
     ck_assert_int_eq(q.n_column, 6);
     for (int k = 0; k < q.n_column; k++) {
-        ck_assert_str_eq(hf_required_column_name(&q.column[k], name), expected[k].name);
+        ck_assert_str_eq(hf_required_column_name(&q, &q.column[k], name), expected[k].name);
         ck_assert_uint_eq(q.column[k].nominal, expected[k].nominal);
         ck_assert_uint_eq(q.column[k].many, expected[k].many);
     }
