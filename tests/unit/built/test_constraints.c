@@ -7,8 +7,13 @@
 #include "search/sensitivity.h"
 
 enum { MAX_TRIED = 4, N_CONSTRAINT_MAX = 64 };
-#define MOVE_M 1e-5 /* of the node that a step moves most: differences of order 2 are off by some (MOVE_M/l)^2 */
-#define AGREEMENT 2e-5
+
+/* Requirements whose derivatives are compared with differences. */
+typedef struct {
+    const char *requirements;
+    double move_m;    /* of the node that a step moves most: differences of order 2 are off by some (move_m/l)^2 */
+    double agreement; /* relative to the largest derivative */
+} differences;
 
 static const char of_design[] =
     "requirements=[{figure: psi, at_most: 1e-4}, {figure: surface, feed: fixed, at_most: 1e-4, load_case: all}, "
@@ -20,6 +25,20 @@ static const char of_samples[] = "requirements=[{figure: psi, at_most: 1e-4, sha
                                  "{figure: facets, at_most: 1e-4, share: 0.9}, "
                                  "{figure: tension, set: boundary, within: [1, 2], load_case: all, share: 0.5}, "
                                  "{figure: tension, set: inner, at_least: 1, load_case: cold, share: 0.85}]";
+
+/* Values of the refocused gain are only exact to about 1e-8 dB, because the best fit is not (unit/surface/antenna). The
+ * steps are therefore larger. */
+static const char of_design_radio[] =
+    "requirements=[{figure: gain_loss, frequency_Hz: 1e9, at_most: 1e-3, load_case: all}, "
+    "{figure: gain, frequency_Hz: 1e9, feed: fixed, at_least: 60, load_case: up}, "
+    "{figure: gain_loss, frequency_Hz: 2e9, feed: fixed, at_most: 1e-3}, "
+    "{figure: pointing, frequency_Hz: 1e9, at_most: 1e-3, load_case: all}]";
+static const char of_samples_radio[] =
+    "requirements=[{figure: gain_loss, frequency_Hz: 1e9, at_most: 1e-3, share: 0.9}, "
+    "{figure: pointing, frequency_Hz: 1e9, at_most: 1e-3, share: 0.8, load_case: up}]";
+static const differences compared[] = {
+    {of_design, 1e-5, 2e-5}, {of_samples, 1e-5, 2e-5}, {of_design_radio, 5e-4, 1e-4}, {of_samples_radio, 1e-4, 2e-4}};
+enum { N_COMPARED = sizeof compared / sizeof *compared };
 
 static void open_problem(hf_problem *p, bool on_truss, const char *requirements)
 {
@@ -79,7 +98,8 @@ START_TEST(derivatives_are_those_of_differences)
 {
     hf_problem p;
     hf_sensitivity s;
-    open_problem(&p, _i % 2, _i / 2 ? of_samples : of_design);
+    const differences *of = &compared[_i / 2];
+    open_problem(&p, _i % 2, of->requirements);
     const hf_constraints *c = p.objectives.constraints;
     ck_assert_ptr_nonnull(c);
     ck_assert_int_le(c->n, N_CONSTRAINT_MAX);
@@ -98,12 +118,12 @@ START_TEST(derivatives_are_those_of_differences)
         for (size_t i = 0; i < n; i++)
             largest[k] = fmax(largest[k], fabs(rate[(size_t)k * n + i]));
     for (int i = 0; i < s.n; i += 1 + s.n / MAX_TRIED) {
-        double step = MOVE_M / largest_move(&p, &s, i, move, tension);
+        double step = of->move_m / largest_move(&p, &s, i, move, tension);
         measure_at(&p, &s, i, step, up);
         measure_at(&p, &s, i, -step, down);
         for (int k = 0; k < c->n; k++) {
             double found = (up[k] - down[k]) / (2 * step), exact = rate[(size_t)k * n + (size_t)i];
-            ck_assert_msg(fabs(found - exact) <= AGREEMENT * largest[k],
+            ck_assert_msg(fabs(found - exact) <= of->agreement * largest[k],
                           "constraint %d, variable %d: %.9g, not %.9g of %g", k, i, exact, found, largest[k]);
         }
     }
@@ -160,7 +180,7 @@ Suite *suite_unit_constraints(void)
     Suite *suite = suite_create("unit/built/constraints");
     TCase *tcase = tcase_create("constraints");
     tcase_set_timeout(tcase, 300);
-    tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 4);
+    tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 2 * N_COMPARED);
     tcase_add_loop_test(tcase, the_mean_of_the_worst_is_conservative, 0, 2);
     tcase_add_test(tcase, rows_that_are_left_out_do_not_constrain);
     suite_add_tcase(suite, tcase);
