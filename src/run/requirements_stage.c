@@ -57,7 +57,11 @@ static hf_status check_row(const hf_problem *p, int i, int *cable, hf_messages *
                                messages);
     if (n == 0) return HF_BAD_CASE;
     bool is_radio = hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO);
-    if ((r->figure == HF_REQUIRED_FACETS || is_radio) && p->facets.n_facet == 0)
+    if (is_radio && p->facets.n_facet == 0)
+        return hf_error(messages, HF_BAD_CASE,
+                        "%s: this net has no facets, so it has no gain. Add cables that enclose facets to its surface",
+                        hf_config_place(&p->settings, place, "requirements.%d.figure", i));
+    if (r->figure == HF_REQUIRED_FACETS && p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE,
                         "%s: this net has no facets. To bound the errors of the nodes, use the figure surface",
                         hf_config_place(&p->settings, place, "requirements.%d.figure", i));

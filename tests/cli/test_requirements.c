@@ -50,6 +50,21 @@ START_TEST(faults_are_named)
          "7:42: load_cases.0.temperature_K: 58 cables have no thermal expansion coefficient"},
         {"  - {figure: surface, at_most: 1}\n", "6:14: requirements.0.figure: is not measured; add a section surface"},
         {"  - {figure: facets, at_most: 1}\n", "6:14: requirements.0.figure: is not measured; add a section surface"},
+        {"  - {figure: gain, at_least: 1}\n", "6:14: requirements.0.figure: is not measured; add a section surface"},
+        {"  - {figure: gain, at_least: 1}\nsurface: {}\n",
+         "6:14: requirements.0.figure: needs a frequency; add frequency_Hz to this row, or surface.frequencies_Hz"},
+        {"  - {figure: gain, at_least: 1, frequency_Hz: 8}\nsurface: {}\n",
+         "6:47: requirements.0.frequency_Hz: is 8 Hz, and below 1 MHz there are no reflectors: was GHz meant?"},
+        {"  - {figure: psi, at_most: 1, frequency_Hz: 8e9}\n",
+         "6:45: requirements.0.frequency_Hz: has no meaning for psi, only for gain_loss, gain, pointing"},
+        {"  - {figure: pointing, at_most: 1, frequency_Hz: 8e8, feed: refocused}\nsurface: {}\n",
+         "6:61: requirements.0.feed: cannot be refocused for pointing"},
+        {"  - {figure: gain_loss, at_most: 1}\n  - {figure: gain_loss, at_most: 2, frequency_Hz: 8e8}\n"
+         "surface: {frequencies_Hz: [8e8]}\n",
+         "7:14: requirements.1.figure: is required by row 0 already; keep one of the rows"},
+        {"  - {figure: gain_loss, at_most: 1, frequency_Hz: 8e12}\nsurface: {}\n",
+         "6:14: requirements.0.figure: hifdm cannot compute this figure at 8000 GHz, because its facets are too "
+         "coarse"},
         {"  - {figure: deflection, at_most: 1}\n", "6:14: requirements.0.figure: needs a section truss"},
         {"  - {figure: mass, at_most: 1}\n",
          "6:14: requirements.0.figure: 58 cables have no mass per length, such as '"},
@@ -83,6 +98,12 @@ START_TEST(faults_are_named)
     file_with("n.csv", "id,x_m,y_m,z_m,role\na,-1,0,0,support\nb,1,0,0,support\nm,0,0.1,0,inner\n");
     file_with("e.csv", "id,i,j,group,law,value,EA_N\np,a,m,inner,force_density,10,2000\nq,b,m,inner,force_density,10,"
                        "2000\n");
+    HIFDM(2, "run",
+          file_with("f.yaml", "scene:\n  import: {nodes: n.csv, cables: e.csv}\n"
+                              "surface: {kind: paraboloid, focal_length_m: 2, frequencies_Hz: [1e9]}\n"
+                              "requirements: [{figure: gain, at_least: 1}]\n"),
+          NOWHERE);
+    ERR("f.yaml:4:25: requirements.0.figure: this net has no facets, so it has no gain");
     HIFDM(2, "run",
           file_with("f.yaml", "scene:\n  import: {nodes: n.csv, cables: e.csv}\n"
                               "surface: {kind: paraboloid, focal_length_m: 2}\n"
@@ -205,8 +226,9 @@ START_TEST(a_bound_at_the_value_is_undecided)
                                    "0.75}\n",
                *path = temp("a.h5");
     HIFDM(0, "run", file_with("c.yaml", formatted(text, 1.0, 1.0)), "-o", path, "--json");
-    double psi_m = number_after("\"figure\": \"psi\", \"set\": \"\", \"feed\": \"refocused\", \"load_case\": "
-                                "\"nominal\", \"at_least\": null, \"at_most\": 1, \"share\": null, \"unit\": \"m\", "
+    double psi_m = number_after("\"figure\": \"psi\", \"set\": \"\", \"feed\": \"refocused\", "
+                                "\"frequency_Hz\": null, \"load_case\": \"nominal\", \"at_least\": null, \"at_most\": "
+                                "1, \"share\": null, \"unit\": \"m\", "
                                 "\"value\": "),
            quantile_N = number_after("\"share\": 0.75, \"unit\": \"N\", \"value\": ");
     HIFDM(0, "run", file_with("c.yaml", formatted(text, psi_m, quantile_N)), "-o", path, "--restart", "--strict");
@@ -220,6 +242,36 @@ START_TEST(a_bound_at_the_value_is_undecided)
     HIFDM(6, "run", file_with("c.yaml", formatted(text, psi_m * (1 - 1e-9), quantile_N)), "-o", path, "--restart",
           "--strict");
     OUT("verdict: fail; 0 of 2 requirements pass, 1 fails, 1 undecided\n");
+}
+END_TEST
+
+/* Samples almost without errors have the figures of the nominal net, in each load case and with each feed. */
+START_TEST(samples_without_errors_radiate_like_the_nominal_net)
+{
+    static const char *const row[] = {"gain", "gain, feed: fixed", "gain_loss", "gain_loss, feed: fixed", "pointing"},
+                             *const load_case[] = {"nominal", "cold", "windy"};
+    enum { N = sizeof row / sizeof *row };
+    char text[8192];
+    int n = snprintf(text, sizeof text,
+                     BUILT_SCENE "tolerance: {sigma_cut_m: 1e-10, samples: 20}\n"
+                                 "surface: {frequencies_Hz: [1e9]}\n" LOADS ROWS);
+    for (int i = 0; i < N; i++)
+        for (int k = 0; k < 6; k++)
+            n += snprintf(text + n, sizeof text - (size_t)n,
+                          "  - {figure: %s, at_most: 1000, load_case: %s, frequency_Hz: %g%s}\n", row[i],
+                          load_case[k / 2], 5e8 * (1 + i % 2), k % 2 ? ", share: 0.5" : "");
+    HIFDM(0, "run", file_with("c.yaml", text), "-o", temp("a.h5"), "--json");
+    const char *at = strstr(said.out, "\"requirements\": [");
+    ck_assert_ptr_nonnull(at);
+    for (int i = 0; i < 3 * N; i++) {
+        double value[2];
+        for (int k = 0; k < 2; k++) {
+            at = strstr(at, "\"value\": ") + strlen("\"value\": ");
+            value[k] = strtod(at, NULL);
+        }
+        ck_assert_msg(fabs(value[1] - value[0]) < 1e-6, "%s, %s: %.9g, not %.9g", row[i / 3], load_case[i % 3],
+                      value[1], value[0]);
+    }
 }
 END_TEST
 
@@ -479,6 +531,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, a_run_begins_with_its_verdict);
     tcase_add_test(tests, json_and_file_have_all_rows);
     tcase_add_test(tests, a_bound_at_the_value_is_undecided);
+    tcase_add_test(tests, samples_without_errors_radiate_like_the_nominal_net);
     tcase_add_test(tests, strict_ends_with_its_own_status);
     tcase_add_test(tests, a_case_without_requirements_keeps_its_result);
     tcase_add_test(tests, the_result_is_judged);

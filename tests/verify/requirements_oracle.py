@@ -3,21 +3,24 @@ shapes in its file. Usage: requirements_oracle.py RESULT.h5
 
 METHOD section 14 has the equations. Rows with a share come from /tolerance/load_case: margin, yield with the interval
 of Clopper and Pearson, quantile, worst sample. Other rows come from the shapes and tensions of the result and of its
-load cases. The best fit, the facets (triangles of the front cables) and their converged quadrature are the oracle's
-own."""
+load cases. The best fit, the facets (triangles of the front cables), their converged quadrature and the physical optics
+of a point feed at the focus (METHOD section 13) are the oracle's own."""
 import sys
 
 import figures
 import h5py
 import numpy as np
 import yaml
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize
 from scipy.stats import beta
 
 SLACK = 1e-3  # of the maximum tension of the design, HF_SLACK_RATIO
 TOLERANCE = 1e-9  # relative, of values
 QUADRATURE = 5e-4  # of facets: the program has 3 x 3 points (METHOD section 9), which are 2.1e-4 off for the 6 m net
+RADIO = 2e-4  # of gain losses and pointings, as below: 2e-5 dB and 2e-6 deg
 COUNT = ("slack_cables", "loose_nodes")
+OF_RADIO = ("gain_loss", "gain", "pointing")
+LIGHT_M_PER_S = 299792458
 
 
 def words(data_set):
@@ -96,14 +99,17 @@ class Result:
             node, moved = self.file["coupling/node"][:], self.file["coupling/displacement_m"][:]
             rest = self.file["form/position_m"][:][node] - moved
             return np.linalg.norm(x[node] - rest, axis=1).max()
-        points, weight = (self.facet_points(x) if what == "facets"
+        if what in OF_RADIO:
+            return self.radio(x, row)
+        points, weight = (self.facet_points(x)[:2] if what == "facets"
                           else (x[self.role == 1], np.ones((self.role == 1).sum())))
-        return self.half_path(points, weight, row["feed"] == "refocused")
+        return self.half_path(points, weight, row["feed"] == "refocused")[0]
 
     # ---- surfaces: paraboloids z = (x^2 + y^2)/(4 f) ----
 
     def facet_points(self, x):
-        """Returns points of quadrature on the triangles of the front cables, and projected areas as weights."""
+        """Returns points of quadrature on the triangles of the front cables, projected areas as weights, and the
+        vectors of area."""
         near = {}
         for name, cables in self.set.items():
             for a, b in self.end[cables] if name.startswith("front") else []:
@@ -124,32 +130,96 @@ class Result:
         b, c = share * (1 - v.ravel()), share * v.ravel()
         p = np.einsum("qk,tkc->tqc", np.stack([1 - b - c, b, c], axis=1), corner)
         e, g = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-        area = np.abs(e[:, 0] * g[:, 1] - e[:, 1] * g[:, 0]) / 2
-        return p.reshape(-1, 3), (area[:, None] * w).ravel()
+        up = np.cross(e, g) / 2
+        up *= np.sign(up[:, 2:])
+        return p.reshape(-1, 3), (up[:, 2:] * w).ravel(), (up[:, None, :] * w[:, None]).reshape(-1, 3)
 
     def half_path(self, p, weight, is_refocused):
+        """Returns the RMS of the half-path errors, the points in the frame of the fitted surface, the rotation into
+        this frame, and the focal length of the surface."""
         f = self.case["scene"]["paraboloid"]["focal_length_m"]
         root = np.sqrt(weight / weight.sum())
         middle = (p.max(0) + p.min(0)) / 2
         half_width = np.linalg.norm((p - middle)[:, :2], axis=1).max()
 
+        def turn(q):
+            (sa, sb), (ca, cb) = np.sin(q[:2]), np.cos(q[:2])
+            return np.array([[cb, 0, sb], [0, 1, 0], [-sb, 0, cb]]) @ np.array([[1, 0, 0], [0, ca, -sa], [0, sa, ca]])
+
         def errors(q):
             """q: rotations about x and y, shift along z, relative focal length, shifts along x and y."""
-            (sa, sb), (ca, cb) = np.sin(q[:2]), np.cos(q[:2])
-            x, y, z = (p - [q[4], q[5], q[2]]).T
-            y, z = ca * y - sa * z, sa * y + ca * z
-            x, z = cb * x + sb * z, cb * z - sb * x
+            x, y, z = turn(q) @ (p - [q[4], q[5], q[2]]).T
             k = 1 / (4 * f * (1 + q[3]))
             return root * (z - k * (x**2 + y**2)) / (1 + 4 * k * k * (x**2 + y**2))
 
         if not is_refocused:
-            return np.linalg.norm(errors(np.zeros(6)))
+            return np.linalg.norm(errors(np.zeros(6))), p, np.eye(3), f
         best, options = np.zeros(6), {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15, "x_scale": "jac"}
         for n in (3, 4, 6):
             fit = least_squares(lambda q: errors(np.append(q, np.zeros(6 - n))), best[:n] + 1e-9 * (n == 6), **options)
             if n < 6 or np.hypot(*fit.x[4:]) < 0.1 * half_width:
                 best = np.append(fit.x, np.zeros(6 - n))
-        return np.linalg.norm(errors(best))
+        return (np.linalg.norm(errors(best)), (p - [best[4], best[5], best[2]]) @ turn(best).T, turn(best),
+                f * (1 + best[3]))
+
+    # ---- physical optics of a paraboloid with a point feed, by default at the focus, polarised along x ----
+
+    def radio(self, x, row):
+        f = self.case["scene"]["paraboloid"]["focal_length_m"]
+        wave = 2 * np.pi * row["frequency_Hz"] / LIGHT_M_PER_S
+        front = [self.end[cables].ravel() for name, cables in self.set.items() if name.startswith("front")]
+        corner = self.target[np.unique(np.concatenate(front))]
+        aim = (corner.max(0) + corner.min(0)) / 2
+        aim[2] = aim[:2] @ aim[:2] / (4 * f)
+        feed = np.array([0, 0, f])
+        axis = (aim - feed) / np.linalg.norm(aim - feed)
+        cosine = (corner - feed) @ axis / np.linalg.norm(corner - feed, axis=1)
+        power = -0.5 * np.log(10) / np.log(cosine.min())  # 10 dB at the outermost corner
+        along_x = np.array([1.0, 0, 0]) - axis[0] * axis
+        along_x /= np.linalg.norm(along_x)
+
+        def currents(p, up, feed, axis, along):
+            t = p - feed
+            path = np.linalg.norm(t, axis=1)
+            t /= path[:, None]
+            twist = t @ along / (1 + t @ axis)
+            field = np.cross(t, along - twist[:, None] * (axis + t)) * ((t @ axis) ** power / path)[:, None]
+            assert ((t * up).sum(1) < 0).all(), "a facet shows its back"
+            return 2 * np.cross(up, field), path
+
+        def field(s, p, current, path):
+            co = np.array([1, 0, 0]) - s[0] / (1 + s[2]) * (s + [0, 0, 1])
+            return (current @ co * np.exp(1j * wave * (p @ s - path))).sum()
+
+        def dBi(p, up, *source):
+            size = abs(field(np.array([0, 0, 1]), p, *currents(p, up, *source)))
+            return 10 * np.log10((2 * power + 1) / 2 * size**2 * row["frequency_Hz"]**2 / LIGHT_M_PER_S**2)
+
+        flat, _, up = self.facet_points(self.target)
+        smooth = np.column_stack([flat[:, :2], (flat[:, :2] ** 2).sum(1) / (4 * f)])
+        up_smooth = np.column_stack([-smooth[:, :2] / (2 * f) * up[:, 2:], up[:, 2]])
+        weight = np.abs(currents(smooth, up_smooth, feed, axis, along_x)[0][:, 0])
+        smooth_dBi = dBi(smooth, up_smooth, feed, axis, along_x)
+        p, _, up = self.facet_points(x)
+        if row["figure"] == "pointing":
+            light = currents(p, up, feed, axis, along_x)
+
+            def direction(q):
+                return np.array([*q, np.sqrt(1 - q @ q)])
+
+            best = minimize(lambda q: -np.log(abs(field(direction(q), p, *light))), np.zeros(2), method="Nelder-Mead",
+                            options={"xatol": 1e-11, "fatol": 1e-16, "initial_simplex": [[0, 0], [1e-3, 0], [0, 1e-3]]})
+            return np.degrees(np.arcsin(np.linalg.norm(best.x)))
+        if row["feed"] == "refocused":
+            _, moved, turn, focal = self.half_path(p, weight, True)
+            p, up, longer = moved, up @ turn.T, focal - f
+            mean = np.average(smooth, axis=0, weights=weight)
+            to = (mean - feed) @ axis * axis + np.average(p, axis=0, weights=weight) - mean - [0, 0, longer]
+            feed, axis = feed + [0, 0, longer], to / np.linalg.norm(to)
+            along_x = along_x - along_x @ axis * axis
+            along_x /= np.linalg.norm(along_x)
+        gain = dBi(p, up, feed, axis, along_x)
+        return gain if row["figure"] == "gain" else smooth_dBi - gain
 
 
 # ---- verdicts ----
@@ -168,7 +238,8 @@ def states_of(result, row):
 
 def column_name(row, is_minimum):
     name = row["figure"] + ({True: "_min", False: "_max"}[is_minimum] if row["figure"] == "tension" else "")
-    name += "_" + row["feed"] if row["figure"] in ("surface", "facets") else ""
+    name += "_" + row["feed"] if row["figure"] in ("surface", "facets", *OF_RADIO) else ""
+    name += f"_{row['frequency_Hz'] / 1e9:.9g}GHz" if row["figure"] in OF_RADIO else ""
     return name + ("_" + row["set"] if row["set"] else "")
 
 
@@ -205,7 +276,7 @@ def judge_nominal(result, row, said):
     least = min(margin)
     scale = max(abs(row["at_least"]) if not np.isnan(row["at_least"]) else 0, abs(said["value"]), 1e-300)
     off = abs(said["margin"] - least) / scale
-    most = QUADRATURE if row["figure"] == "facets" else TOLERANCE
+    most = QUADRATURE if row["figure"] == "facets" else RADIO if row["figure"] in OF_RADIO else TOLERANCE
     assert off == 0 if row["figure"] in COUNT else off < most, (said["margin"], least)
     at = states_of(result, row)[int(np.argmin(margin))]
     ties = sorted(margin)[1] - least < 1e-9 * scale if len(margin) > 1 else False
@@ -213,7 +284,7 @@ def judge_nominal(result, row, said):
     error = 0 if np.isnan(said["error_bound"]) else said["error_bound"]
     assert abs(least) > error or row["figure"] in COUNT, "this row cannot be judged from its value"
     assert said["verdict"] == ("pass" if least >= 0 else "fail"), said["verdict"]
-    return least, off if most == TOLERANCE else 0.0
+    return least, off
 
 
 def main(path):
@@ -223,7 +294,8 @@ def main(path):
         table = {key: words(of[key]) if of[key].dtype.kind in "OS" else of[key][:].tolist() for key in of}
         for k in range(len(table["figure"])):
             said = {key: table[key][k] for key in table}
-            row = {key: said[key] for key in ("figure", "set", "feed", "load_case", "at_least", "at_most", "share")}
+            row = {key: said[key] for key in ("figure", "set", "feed", "frequency_Hz", "load_case", "at_least",
+                                              "at_most", "share")}
             judge = judge_nominal if np.isnan(row["share"]) else judge_samples
             margin, off = judge(result, row, said)
             bound = said["bound"]
@@ -235,9 +307,10 @@ def main(path):
                 assert abs(said["relative_margin"] - said["margin"] / abs(bound)) < 1e-12
             else:
                 assert not np.isfinite(said["relative_margin"])
-            worst, count[said["verdict"]] = max(worst, off), count.get(said["verdict"], 0) + 1
+            exact = row["figure"] not in (*OF_RADIO, "facets")
+            worst, count[said["verdict"]] = max(worst, off * exact), count.get(said["verdict"], 0) + 1
             print(f"{said['verdict']:9}  {row['figure']:12} {row['set']:10} margin {margin:.6g}, differs by {off:.1e}")
-    figures.worst(worst, TOLERANCE, "margins of nominal rows, relative to their values")
+    figures.worst(worst, TOLERANCE, "margins of nominal rows but those of facets, relative to their values")
     print(" ".join(f"{word} {count[word]}" for word in sorted(count)))
 
 

@@ -2,6 +2,7 @@
  * nominal net around a bound, and on shares of samples with random margins. */
 #include "built_nets.h"
 
+#include "built/required_radio.h"
 #include "built/statistics.h"
 #include <hifdm/problem.h>
 
@@ -57,20 +58,32 @@ START_TEST(columns_are_measured_once)
     add(&l, HF_REQUIRED_SLACK, "", "cold", 0, 2, NAN);
     add(&l, HF_REQUIRED_FACETS, "", "all", NAN, 1, NAN);
     add(&l, HF_REQUIRED_FACETS, "", "cold", NAN, 1, 0)->feed = HF_FIXED;
+    add(&l, HF_REQUIRED_GAIN, "", "cold", 50, NAN, NAN)->frequency_Hz = 8e9;
+    add(&l, HF_REQUIRED_GAIN, "", "hot", NAN, 60, NAN)->frequency_Hz = 8e9;
+    add(&l, HF_REQUIRED_GAIN, "", "cold", 50, NAN, NAN)->frequency_Hz = 8.5e9;
+    add(&l, HF_REQUIRED_GAIN_LOSS, "", "all", NAN, 1, 0.5)->frequency_Hz = 8e9;
     create(&l, &net.scene, NULL, &q);
     static const struct {
         const char *name;
         unsigned nominal, many;
-    } expected[] = {{"tension_min", 1, 4},  {"tension_max", 1, 0},      {"tension_max_inner", 0, 7},
-                    {"slack_cables", 2, 0}, {"facets_refocused", 7, 0}, {"facets_fixed", 0, 2}};
-    ck_assert_int_eq(q.n_column, 6);
+    } expected[] = {{"tension_min", 1, 4},         {"tension_max", 1, 0},           {"tension_max_inner", 0, 7},
+                    {"slack_cables", 2, 0},        {"facets_refocused", 7, 0},      {"facets_fixed", 0, 2},
+                    {"gain_refocused_8GHz", 6, 0}, {"gain_refocused_8.5GHz", 2, 0}, {"gain_loss_refocused_8GHz", 0, 7}};
+    ck_assert_int_eq(q.n_column, 9);
     for (int k = 0; k < q.n_column; k++) {
         ck_assert_str_eq(hf_required_column_name(&q, &q.column[k], name), expected[k].name);
         ck_assert_uint_eq(q.column[k].nominal, expected[k].nominal);
         ck_assert_uint_eq(q.column[k].many, expected[k].many);
     }
     ck_assert(q.low[0] == 0 && q.high[0] == 1 && q.low[1] == 0 && q.high[1] == -1 && q.low[3] == q.high[3]);
-    ck_assert(q.n_share == 3 && q.share[0] == 1 && q.share[2] == 5);
+    ck_assert(q.n_share == 4 && q.share[0] == 1 && q.share[2] == 5);
+    unsigned what[HF_REQUIREMENT_ROWS_MAX]; /* rows at a frequency share its antenna, and groups of figures */
+    ck_assert_int_eq(q.n_antenna, 2);
+    ck_assert(q.column[6].antenna == 0 && q.column[7].antenna == 1 && q.column[8].antenna == 0);
+    ck_assert(!hf_required_radio_what(&q, false, 0, what) && what[0] == 0 && what[1] == 0);
+    ck_assert(hf_required_radio_what(&q, false, 1, what));
+    ck_assert(what[0] == HF_ANTENNA_REFOCUSED && what[1] == HF_ANTENNA_REFOCUSED);
+    ck_assert(hf_required_radio_what(&q, true, 1, what) && what[0] == HF_ANTENNA_REFOCUSED && what[1] == 0);
     ck_assert(q.nominal == 7 && q.many == 7);
     ck_assert(hf_required_needs_surface(&q, false, 0) && hf_required_needs_surface(&q, true, 1));
     ck_assert(!hf_required_needs_surface(&q, true, 0) && !hf_required_needs_surface(&q, true, 2));
