@@ -14,6 +14,7 @@
 #include "store/store_series.h"
 #include <hifdm/metrics.h>
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -99,6 +100,25 @@ static const char *said_of(const hf_summary *s, void (*print)(const hf_summary *
     print(s, f);
     fclose(f);
     return text;
+}
+
+static void write_answers(const hf_summary *s, hf_json *j)
+{
+    char said[ANSWER_SIZE];
+    hf_json_text(j, "answer", said_of(s, hf_print_answer, said));
+    hf_json_text(j, "gain_loss", said_of(s, hf_print_gain_loss, said));
+}
+
+/* Writes the answer of the page; of two results both, each with the name of its file. */
+static void write_headline(const page *p, char text[ANSWER_SIZE])
+{
+    FILE *f = fmemopen(text, ANSWER_SIZE, "w");
+    if (!f) return;
+    if (p->other) fprintf(f, "%s: ", hf_path_name(p->path));
+    hf_print_answer(&p->summary, f);
+    if (p->other) fprintf(f, "; %s: ", hf_path_name(p->other->path));
+    if (p->other) hf_print_answer(&p->other->summary, f);
+    fclose(f);
 }
 
 /* ---- net and shapes ---- */
@@ -385,11 +405,12 @@ static void write_stored(const char *key, const hf_texts *text, FILE *f)
 
 static void write_other(const page *p, const page *other, FILE *f)
 {
-    hf_json j = {.file = f};
+    hf_json j = {.file = f, .is_due = true};
     write_stored("case_text", &p->case_text, f);
     write_stored("overrides", &p->overrides, f);
-    fputs(",\n\"other\":{", f);
-    hf_json_text(&j, "name", hf_path_name(other->path));
+    hf_json_open_line(&j, "", "other", '{');
+    write_answers(&other->summary, &j);
+    hf_report_curves_write(&other->summary, &other->required, f);
     write_stored("case_text", &other->case_text, f);
     write_stored("overrides", &other->overrides, f);
     write_objective_units(&other->summary, &j);
@@ -397,7 +418,7 @@ static void write_other(const page *p, const page *other, FILE *f)
     hf_summary_write_json(&other->summary, hf_summary_status(&other->summary), other->summary.warnings, other->path, f);
     if (!hf_scene_difference(&p->scene, &other->scene)) write_shapes(other, HF_N_STAGE, f);
     write_patterns(other, f);
-    fputc('}', f);
+    hf_json_close(&j, '}');
 }
 
 static void write_data(const void *context, FILE *f)
@@ -405,11 +426,9 @@ static void write_data(const void *context, FILE *f)
     const page *p = context;
     const hf_summary *s = &p->summary;
     hf_json j = {.file = f};
-    char said[ANSWER_SIZE];
     hf_json_open(&j, NULL, '{');
     hf_json_text(&j, "title", heading(s));
-    hf_json_text(&j, "answer", said_of(s, hf_print_answer, said));
-    hf_json_text(&j, "gain_loss", said_of(s, hf_print_gain_loss, said));
+    write_answers(s, &j);
     hf_json_line(&j, "");
     hf_json_lines(&j, "provenance", "", p->provenance);
     fputs(",\n\"summary\":", f);
@@ -543,9 +562,10 @@ hf_status hf_report_result(const char *path, const char *other, const hf_report_
         status = read_page(&beside, messages);
         p.other = &beside;
     }
-    char answer[ANSWER_SIZE] = "";
-    if (status == HF_OK) said_of(&p.summary, hf_print_answer, answer);
-    const hf_report_page text = {heading(&p.summary), answer, write_data, &p};
+    char title[2 * NAME_MAX + 8], answer[ANSWER_SIZE] = "";
+    if (other) snprintf(title, sizeof title, "%s and %s", hf_path_name(path), hf_path_name(other));
+    if (status == HF_OK) write_headline(&p, answer);
+    const hf_report_page text = {other ? title : heading(&p.summary), answer, write_data, &p};
     if (status == HF_OK && part)
         status = hf_file_out_set_write(part->files, output, hf_report_page_write, &text, messages);
     else if (status == HF_OK)

@@ -4,6 +4,33 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { changes, csv, DATA, number, openCopy, same } from "./see.mjs";
 
+// Both results are named by their files: in the title, in the headline of each, in columns, pictures and legends.
+async function checkNames(tab, made, other) {
+  assert.equal(await tab.locator("h1").textContent(), "result.h5 and other.h5");
+  assert.equal(await tab.title(), "result.h5 and other.h5");
+  const answers = await tab.locator(".answer").allTextContents(),
+    said = ["result.h5", "other.h5"].map((file) =>
+      made.hifdm("show", file).split("\n").find((line) => /^psi /.test(line)),
+    );
+  assert.equal(answers.length, 2);
+  assert.ok(answers[0].startsWith(`result.h5: P${said[0].slice(1)}.`), answers[0]);
+  assert.ok(answers[1].startsWith(`other.h5: P${said[1].slice(1)}.`), answers[1]);
+  const labels = async (place) => (await tab.locator(place).allTextContents()).map((text) => text.trim()),
+    shapes = ["result.h5: form", "result.h5: search", "result.h5: refine", "other.h5: refine"];
+  assert.deepEqual((await labels("#net fieldset:first-child label")).slice(1), shapes);
+  assert.deepEqual(await labels("#map fieldset:first-child label"), shapes);
+  assert.deepEqual(await labels("#tensions .chart:first-child .legend > span"), shapes);
+  assert.deepEqual(await labels("#compare thead th"), [
+    ...["Quantity", "result.h5: search", "other.h5: refine", "change to other.h5", "Unit"],
+  ]);
+  const heads = await labels("h2");
+  assert.ok(heads.includes("result.h5: Summary") && heads.includes("Tensions"), heads.join("; "));
+  const alike = await tab.evaluate(() => fileNames(["/runs/a/x.h5", "/runs/b/x.h5"]));
+  assert.deepEqual(alike, ["…/a/x.h5", "…/b/x.h5"]);
+  const text = await tab.locator("body").innerText();
+  assert.ok(!/\b(this|other) result\b|\bthis:|\bother:/.test(text));
+}
+
 // Figures of both results, what differs in their cases, and the tensions of both in the table of cables.
 export async function checkOther(tab, page, made) {
   const other = JSON.parse(made.hifdm("show", "other.h5", "--json")),
@@ -11,6 +38,7 @@ export async function checkOther(tab, page, made) {
     [a, b, change] = (await row.locator("td").allTextContents()).map(number);
   same(a, 1e3 * made.summary.search.psi_m, 5);
   same(b, 1e3 * other.refine.psi_m, 5);
+  await checkNames(tab, made, other);
   assert.equal(change, Number((1e3 * (other.refine.psi_m - made.summary.search.psi_m)).toFixed(4)));
   const lines = await tab.locator("#compare .differences li").allTextContents();
   assert.deepEqual(lines, ["+ optimize.method=lm", "+ form.pretension_N=10.5"]);
@@ -18,7 +46,7 @@ export async function checkOther(tab, page, made) {
   const theirs = new Map(csv(join(made.folder, "cables.csv")).map((c) => [c.id, Number(c.tension_N)])),
     ours = new Map(made.cables.map((c) => [c.id, Number(c.tension_N)]));
   const heads = await tab.locator("#cables thead th").allTextContents(),
-    column = heads.findIndex((text) => text.startsWith("change"));
+    column = heads.indexOf("change to other.h5 (N)");
   const rows = await tab
     .locator("#cables tbody tr")
     .evaluateAll((all) => all.map((r) => [...r.children].map((c) => c.textContent)));

@@ -22,7 +22,8 @@ function poison(data) {
   data.net.node_id = data.net.node_id.map(() => HOSTILE);
   data.net.cable_id = data.net.cable_id.map(() => HOSTILE);
   if (data.other) {
-    Object.assign(data.other, { name: HOSTILE, case_text: [HOSTILE], overrides: [`${HOSTILE}\n${HOSTILE}`] });
+    Object.assign(data.other, { answer: HOSTILE, case_text: [HOSTILE], overrides: [`${HOSTILE}\n${HOSTILE}`] });
+    Object.assign(data.other.summary, { file: HOSTILE, version: HOSTILE });
     data.other.summary.form.status = HOSTILE;
   }
   if (data.summary.tolerance) data.summary.tolerance.cable_share.forEach((row) => (row.cable = HOSTILE));

@@ -195,6 +195,19 @@ export const pages = [
     sections: ["compare", ...FORM],
   },
   {
+    name: "compare-verdicts", // of both, before the headlines
+    text: cylinder([4, 5], "requirements: [{figure: psi, at_most: 0.078}, {figure: slack_cables, at_most: 0}]\n"),
+    other: ["--set", "requirements.0.at_most=0.07"],
+    sections: ["requirements", "requirements-other", "compare", ...FORM],
+    says: {
+      "main > section:nth-of-type(1) h2": "Verdict on result.h5: pass",
+      "#requirements > p": "2 of 2 requirements pass.",
+      "main > section:nth-of-type(2) h2": "Verdict on other.h5: fail",
+      "#requirements-other > p": "1 of 2 requirements pass, 1 fails.",
+      "#answer-other": /^other\.h5: Psi 77\./,
+    },
+  },
+  {
     name: "failed", // no design is within the cap
     text: cylinder([4, 5], "optimize: {method: lm, range_N: 1e-6, boundary_ratio_cap: 1.0001}\n"),
     fails: true,

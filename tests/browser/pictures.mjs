@@ -64,7 +64,7 @@ export async function checkNet(tab, page, made) {
   assert.equal((await tip(tab, "net")).heading, `cable ${made.cables.at(-1).id}`);
   await tab.keyboard.press("Escape");
   assert.equal(await tip(tab, "net"), null);
-  for (const label of ["tension", "slack", "none", "target", "form"])
+  for (const label of ["tension", "slack", "none", "target", page.other ? "result.h5: form" : "form"])
     await changes(tab, label, () => tab.locator("#net").getByLabel(label, { exact: true }).check());
   if (page.truss)
     await changes(tab, "the truss", () => tab.locator("#net").getByLabel("truss", { exact: true }).uncheck());

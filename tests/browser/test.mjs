@@ -191,7 +191,7 @@ async function test(browser, page) {
     assert.equal(await tab.locator("#sweep .chart").count(), 0);
     await checkPoints(tab, page, made);
   } else {
-    await checkSummary(tab, made);
+    await checkSummary(tab, made, page);
     const isOptimised = ["search", "refine", "front"].some((key) => key in made.summary);
     assert.equal(/ variables,/.test(await tab.locator("#subtitle").textContent()), isOptimised);
     if (page.name === "chen2022") await checkWords(tab, made);

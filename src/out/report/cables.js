@@ -37,6 +37,7 @@ function lengthChange(before, after) {
 
 function cableColumns(before, after, families, choose) {
   const two = before !== after,
+    ofAfter = otherShape ? `, ${after.name}` : "", // only with two results
     length = after.unstressed_length_m,
     lengthened = lengthChange(before, after);
   const family = families.map((names, e) => names.join(", ") || groupOf(e));
@@ -47,9 +48,9 @@ function cableColumns(before, after, families, choose) {
     { name: "Family", beside: true, of: (e) => family[e], show: (e) => family[e] },
     two ? cableColumn(`tension, ${before.name} (N)`, (e) => before.tension_N[e], 5) : null,
     cableColumn(`tension, ${after.name} (N)`, (e) => after.tension_N[e], 5),
-    two ? cableColumn("change (N)", change, 4, { isChange: true, rounding }) : null,
-    cableColumn("length (m)", (e) => after.length_m[e], 6),
-    length ? cableColumn("unstressed length (m)", (e) => length[e], 6) : null,
+    two ? cableColumn(`change${otherShape ? ` to ${otherName}` : ""} (N)`, change, 4, { isChange: true, rounding }) : null,
+    cableColumn(`length${ofAfter} (m)`, (e) => after.length_m[e], 6),
+    length ? cableColumn(`unstressed length${ofAfter} (m)`, (e) => length[e], 6) : null,
     lengthened
       ? cableColumn(lengthened[0], lengthened[1], 4, { unit: 1e3, isChange: true, rounding: RESOLVED_MM / 1e3 })
       : null,
@@ -83,13 +84,13 @@ function writeCables(view) {
     before = otherShape ? resultShape : shapeOf("form") || after;
   if (!after) return;
   const two = before !== after,
-    base = otherShape ? "in this result" : two ? "after form-finding" : "in the net at its target positions",
+    base = otherShape ? `in ${thisName}` : two ? "after form-finding" : "in the net at its target positions",
     families = allFamilies(),
     columns = cableColumns(before, after, families, chooserOf(view)),
     change = columns.findIndex(({ size }) => size);
   const words = [
     otherShape
-      ? "The table lists the cable tensions in this result and in the other result."
+      ? `The table lists the cable tensions in ${thisName} and ${otherName}.`
       : two
         ? `The table lists the cable tensions after form-finding and in the result (${after.name}).`
         : null,

@@ -27,7 +27,7 @@ function differences(x, y) {
 const LINES_OF_CASE_MAX = 600;
 function caseDifferences() {
   const linesOf = (of) => `${of.case_text[0]}\n${of.overrides[0]}`.split("\n").filter((line) => !/^\s*#/.test(line));
-  const all = [data, data.other].map(linesOf),
+  const all = [data, other].map(linesOf),
     left = Math.max(...all.map((text) => text.length)) - LINES_OF_CASE_MAX,
     lines = differences(...all.map((text) => text.slice(0, LINES_OF_CASE_MAX)));
   const cut =
@@ -42,7 +42,7 @@ function caseDifferences() {
   if (!lines.length) return [left > 0 ? cut : el("p", {}, "The two case files are identical.")];
   return [
     el("h3", { class: "after" }, "Differences of the cases"),
-    el("p", {}, `− of this result, + of ${data.other.name}.`),
+    el("p", {}, `− of ${thisName}, + of ${otherName}.`),
     cut,
     el(
       "ul",
@@ -61,7 +61,6 @@ function decimalsOf(text, beside) {
 }
 
 function writeOther() {
-  const { other } = data;
   if (!other) return;
   const [stageA, stageB] = [summary, other.summary].map((figures) => resultStageIn(figures, (stage) => figures[stage])),
     stages = [summary[stageA], other.summary[stageB]];
@@ -79,21 +78,21 @@ function writeOther() {
   };
   section(
     "compare",
-    `Comparison with ${other.name}`,
+    "Comparison",
     el(
       "p",
       {},
       otherShape
-        ? "The two results have the same net. The pictures can also show the shape of the other result. The table " +
-            "of cables lists the tensions of both results."
+        ? `The two results have the same net. The pictures can also show the shape of ${otherName}. The table of ` +
+            "cables lists the tensions of both results."
         : "Because the two results have different nets, this page compares only their numerical results.",
     ),
     table(
       [
         ["Quantity"],
-        [`this: ${stageName[stageA]}`, "number"],
-        [`other: ${stageName[stageB]}`, "number"],
-        ["change", "number"],
+        [ofThis(stageName[stageA]), "number"],
+        [ofOther(stageNames(other.summary)[stageB]), "number"],
+        [`change to ${otherName}`, "number"],
         ["Unit"],
       ],
       rows.map(([name, unit, key, format]) =>
@@ -107,7 +106,7 @@ function writeOther() {
           el("td", { class: "unit" }, unit),
         ),
       ),
-      "This result and the other",
+      `Figures of ${thisName} and ${otherName}`,
     ),
     ...caseDifferences(),
   );

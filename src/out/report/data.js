@@ -115,18 +115,19 @@ const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
 const net = data.net;
 // Returns the number of the point of a front that is the design, or 0.
 const pointIn = (figures) => (figures.refine && figures.refine.front_point) || 0;
-const stageName = {
+const stageNames = (figures) => ({
   form: "form",
   search: "search",
-  refine: pointIn(data.summary || {}) ? `point ${pointIn(data.summary)} of the front` : "refine",
-};
+  refine: pointIn(figures) ? `point ${pointIn(figures)} of the front` : "refine",
+});
 const digit = (text, i) => text.charCodeAt(i) - 48;
 const innerCode = net && net.role_word.indexOf("inner"),
   isInner = (i) => digit(net.role, i) === innerCode;
 const roleOf = (i) => net.role_word[digit(net.role, i)];
 const groupOf = (e) => net.group_word[digit(net.group, e)];
 
-const summary = data.summary || {};
+const summary = data.summary || {},
+  stageName = stageNames(summary);
 // Returns the stage that is the result, as `hifdm export` chooses it; and its shape.
 const resultStageIn = (figures, has) =>
   (figures.refine && figures.refine.is_result && has("refine") && "refine") ||
@@ -137,8 +138,22 @@ const resultIn = (figures, shapes) => {
   return of(resultStageIn(figures, of));
 };
 // The result for comparison. Its shape is shown with the others when it has the same net.
-if (data.other) data.other.name = clip(data.other.name, 40);
-const otherShape = data.other && resultIn(data.other.summary, data.other.shapes);
+const { other } = data;
+// With two results, both are named by their files, with as many folders as tell them apart.
+function fileNames(paths) {
+  const parts = paths.map((path) => path.split("/")),
+    most = Math.max(...parts.map(({ length }) => length));
+  let n = 1;
+  const name = (of) => of.slice(-n).join("/");
+  while (n < most && name(parts[0]) === name(parts[1])) n++;
+  return parts.map((of) => `${n < of.length && n > 1 ? "…/" : ""}${name(of)}`);
+}
+const [thisName, otherName] = other
+  ? fileNames([summary.file, other.summary.file]).map((name) => clip(name, 40))
+  : [];
+const ofThis = (text) => (other ? `${thisName}: ${text}` : text),
+  ofOther = (text) => `${otherName}: ${text}`;
+const otherShape = other && resultIn(other.summary, other.shapes);
 const resultShape = resultIn(summary, data.shapes);
 if (otherShape) data.shapes.push(otherShape);
 
@@ -147,7 +162,9 @@ for (const shape of data.shapes || []) {
   const d = shape.displacement_m,
     n = net.n_node;
   shape.name = shape.load_case ? `load case ${shape.load_case}` : stageName[shape.stage];
-  if (shape === otherShape) Object.assign(shape, { stage: "other", name: `${data.other.name}: ${shape.name}` });
+  shape.name =
+    shape === otherShape ? ofOther(stageNames(other.summary)[shape.stage]) : ofThis(shape.name);
+  if (shape === otherShape) shape.stage = "other";
   shape.distance_mm = new Float64Array(n);
   shape.height_mm = new Float64Array(n);
   for (let i = 0; i < n; i++) {

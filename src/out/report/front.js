@@ -2,7 +2,7 @@
 
 // Names of objectives for people: without their number, lengths in mm.
 const objectiveName = (key) => key.replace(/^objective_[0-9]+_/, "").replace(/_/g, " ").replace(/^psi\b/, "ψ");
-const storedUnit = (key) => ({ ...(data.other && data.other.objective_unit), ...data.objective_unit })[key] || "";
+const storedUnit = (key) => ({ ...(other && other.objective_unit), ...data.objective_unit })[key] || "";
 const objectiveUnit = (key) => (storedUnit(key) === "m" ? "mm" : storedUnit(key));
 const objectiveScale = (key) => (storedUnit(key) === "m" ? 1e3 : 1);
 const objectiveLabel = (key) => objectiveName(key) + (objectiveUnit(key) ? ` (${objectiveUnit(key)})` : "");

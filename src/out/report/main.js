@@ -2,7 +2,11 @@
 
 const main = document.getElementById("main");
 
-function section(id, title, ...children) {
+// Sections that have both of two results, or name their file. The title of the others begins with it.
+const OF_BOTH = ["requirements", "requirements-other", "compare", "net", "cables", "map", "tensions", "far-field"];
+
+function section(id, name, ...children) {
+  const title = OF_BOTH.includes(id) ? name : ofThis(name);
   document.getElementById("contents").append(el("a", { href: `#${id}` }, title));
   const heading = el("h2", { id: `${id}-title` }, title);
   const node = el("section", { id, "aria-labelledby": `${id}-title` }, heading, ...children),
@@ -15,7 +19,7 @@ function section(id, title, ...children) {
 // ---- head: title, warnings, the main figures ----
 
 function writeHead() {
-  document.getElementById("title").textContent = shown(data.title);
+  document.getElementById("title").textContent = shown(other ? `${thisName} and ${otherName}` : data.title);
   const found =
     `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables, ` +
     (data.n_variable ? `${fmtCount(data.n_variable)} design variables, ` : "") +
@@ -24,9 +28,11 @@ function writeHead() {
     ? `; truss of ${fmtCount(summary.truss.nodes)} nodes, ${fmtCount(summary.truss.members)} members, ` +
       `${fmt(summary.truss.mass_kg)} kg`
     : "";
-  document.getElementById("subtitle").textContent = found + truss;
+  document.getElementById("subtitle").textContent = ofThis(found + truss);
   document.getElementById("footer").textContent = shown(
-    `Version ${summary.version} of hifdm computed the results in ${summary.file}.`,
+    [summary, ...(other ? [other.summary] : [])]
+      .map(({ version, file }) => `Version ${version} of hifdm computed the results in ${file}.`)
+      .join(" "),
   );
 }
 
@@ -48,18 +54,16 @@ function writeWarnings(title, lines) {
 
 // Writes errors and warnings; with two results those of both, each with the name of its file.
 function writeMessages() {
-  const { other } = data,
-    file = clip(summary.file.split("/").pop(), 40),
-    name = other && file === other.name ? "this result" : file,
-    linesOf = (key) => [
-      ...(summary[key] || []).map((line) => (other ? `${name}: ${line}` : line)),
-      ...((other && other.summary[key]) || []).map((line) => `${other.name}: ${line}`),
-    ];
+  const linesOf = (key) => [
+    ...(summary[key] || []).map(ofThis),
+    ...((other && other.summary[key]) || []).map(ofOther),
+  ];
   const lines = [...linesOf("errors"), ...linesOf("warnings")],
     isOfForm = resultStage === "form" && summary.status !== "not_converged"; // otherwise the form-finding itself failed
   let title = lines.length === 1 ? "One warning" : `${lines.length} warnings`;
-  if (other && other.summary.errors) title = `The run of ${other.name} failed`;
-  if (summary.errors) title = `This run failed${isOfForm ? ": its figures are those of the form-finding" : ""}`;
+  if (other && other.summary.errors) title = `The run of ${otherName} failed`;
+  if (summary.errors)
+    title = `${other ? `The run of ${thisName}` : "This run"} failed${isOfForm ? ": its figures are those of the form-finding" : ""}`;
   if (other && summary.errors && other.summary.errors) title = "Both runs failed";
   writeWarnings(title, lines);
 }
@@ -84,18 +88,18 @@ const resultNumbers = summary[resultStage];
 const figure = (name, value, unit) =>
   el("div", {}, el("dt", {}, name), el("dd", {}, value, unit && value !== "–" ? el("small", {}, unit) : null));
 
-// Writes the answer in the words of the program's summary.
-function writeAnswer() {
-  const said = [data.answer, data.gain_loss].filter((text) => text);
+// Writes the answer in the words of the program's summary; with two results, of both.
+function writeAnswer(id, of, front, name) {
+  const said = [of.answer, of.gain_loss].filter((text) => text);
   if (!said.length) return;
   const [answer, ...more] = said.map(sentence);
-  const beside = more.length && !summary.front ? el("small", {}, more) : null;
-  main.append(el("p", { class: "answer", id: "answer" }, answer, beside));
-  writeWhose(more);
+  const beside = more.length && !front ? el("small", {}, more) : null;
+  main.append(el("p", { class: "answer", id }, name ? `${name}: ` : "", answer, beside));
+  if (!other) writeWhose(more);
 }
 
 function writeFigures() {
-  if (!resultNumbers) return;
+  if (!resultNumbers || other) return; // of two results, the comparison has the figures
   // Other objectives than ψ may raise ψ.
   const initial = summary.search && !summary.form.objectives && summary.search.initial_psi_m,
     list = [];
@@ -351,7 +355,8 @@ if (data.study) {
   writeHead();
   writeRequirements();
   writeMessages();
-  writeAnswer();
+  writeAnswer("answer", data, summary.front, thisName);
+  if (other) writeAnswer("answer-other", other, other.summary.front, otherName);
   writeFigures();
   writeOther();
   writeNet();

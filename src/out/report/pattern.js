@@ -1,14 +1,13 @@
 // The section of the far field of surface.pattern: cuts, and the figures of each.
 
-// Returns the far fields of this result, and that of the result of the other one.
+// Returns the far fields of this result, and that of the result of the other file.
 function patterns() {
   const named = (list, name) => (list || []).map((p) => ({ ...p, name: name(p) }));
-  const { other } = data,
-    stage = other && resultStageIn(other.summary, (of) => other.summary[of]),
+  const stage = other && resultStageIn(other.summary, (of) => other.summary[of]),
     theirs = other && (other.pattern || []).filter((p) => p.stage === stage);
   return [
-    ...named(data.pattern, (p) => stageName[p.stage]),
-    ...named(theirs, (p) => `${other.name}: ${stageName[p.stage]}`),
+    ...named(data.pattern, (p) => ofThis(stageName[p.stage])),
+    ...named(theirs, (p) => ofOther(stageNames(other.summary)[p.stage])),
   ];
 }
 
@@ -26,7 +25,7 @@ const CUTS_MAX = 4, // not more than there are colours
 function patternChart(all, frequency_Hz, phi_deg, isPart) {
   const x = different(all.flatMap((p) => p.theta_deg)),
     at = new Map(x.map((theta, i) => [theta, i]));
-  const shapes = all.map((p) => ({ ...p, isResult: p.name === stageName[resultStage] }));
+  const shapes = all.map((p) => ({ ...p, isResult: p.name === resultShape.name }));
   const dashed = shapes.filter((p) => !p.isResult);
   const series = shapes.flatMap((p) =>
     [...p.cut]

@@ -36,10 +36,10 @@ function worstOf(row) {
 }
 
 // Returns the rows as in the summary: failed, undecided, passed, without a verdict; in each the tightest first.
-function judged() {
+function judged(of = summary, required = data.required) {
   const tightness = (row) => (hasNumber(row.relative_margin) ? row.relative_margin : Infinity);
-  return (summary.requirements || [])
-    .map((row, i) => ({ ...row, ...data.required[i] }))
+  return (of.requirements || [])
+    .map((row, i) => ({ ...row, ...required[i] }))
     .sort((a, b) => VERDICT_RANK[a.verdict] - VERDICT_RANK[b.verdict] || tightness(a) - tightness(b) || 0);
 }
 
@@ -56,12 +56,12 @@ function verdictText(rows) {
   );
 }
 
-function verdictTable(rows) {
+function verdictTable(rows, caption) {
   const open = rows.filter((row) => row.verdict === "fail" || row.verdict === "undecided").length;
   const column = (name, show, more) => ({ name, show: (i) => show(rows[i]), of: (i) => show(rows[i]), ...more });
   const amount = (name, key, show) => column(name, show, { number: true, of: (i) => rows[i][key] });
   return sortableTable({
-    caption: "Requirements",
+    caption,
     n: rows.length,
     by: -1,
     most: open + TIGHTEST_SHOWN,
@@ -153,15 +153,21 @@ function distribution(row) {
   });
 }
 
+// Writes the verdicts; with two results, on both.
 function writeRequirements() {
-  const rows = judged();
-  if (!rows.length) return;
-  section(
-    "requirements",
-    `Verdict: ${summary.verdict === "none" ? "none" : summary.verdict}`,
-    el("p", {}, verdictText(rows)),
-    verdictTable(rows),
-  );
+  const write = (id, of, required, name) => {
+    const rows = judged(of, required);
+    if (!rows.length) return;
+    const caption = name ? `Requirements of ${name}` : "Requirements";
+    section(
+      id,
+      `Verdict${name ? ` on ${name}` : ""}: ${of.verdict}`,
+      el("p", {}, verdictText(rows)),
+      verdictTable(rows, caption),
+    );
+  };
+  write("requirements", summary, data.required, thisName);
+  if (other) write("requirements-other", other.summary, other.required, otherName);
 }
 
 // Writes the distribution functions of the rows with a share, those of the tightest rows first.
