@@ -142,7 +142,7 @@ export const pages = [
       [4, 5],
       "optimize: {method: lm, front_points: 5, front: [{figure: psi}, {figure: ratio, set: boundary}]}\n",
     ),
-    sections: ["net", "cables", "map", "tensions", "front", "summary", "form-finding", "provenance"],
+    sections: ["front", "net", "cables", "map", "tensions", "summary", "form-finding", "provenance"],
   },
   {
     name: "tolerance",

@@ -1,7 +1,8 @@
 // Parts of a page that only some results have.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { csv, number, picture, same, settle, tip } from "./see.mjs";
+import { csv, DATA, number, openCopy, picture, same, settle, tip } from "./see.mjs";
 
 // Nodes whose deviations are rounding have one colour, and the page says so, and how far those are that psi does not
 // count; another shape of the page has a scale. Of the two nets in space only the front counts.
@@ -211,12 +212,29 @@ export async function checkTolerance(tab, made) {
   );
 }
 
-// Objectives are in units that people read, and a design before the optimisation that is far off does not flatten the
-// front but is told.
-export async function checkFront(tab, made) {
-  const { initial, points } = made.summary.front,
+// The points come first, in a table of their values, slopes and verdicts; objectives are in units that people read, each
+// point has a mark, and is named by its values; a design before the optimisation that is far off does not flatten the
+// front but is told; the shape below is said to be no point.
+export async function checkFront(browser, tab, made, folder) {
+  const { initial, points, knee, minimised } = made.summary.front,
     [psi, ratio] = Object.keys(initial),
     picture = tab.locator("#front svg[tabindex]");
+  assert.equal(await tab.locator("main > :not(noscript)").first().getAttribute("id"), "front");
+  const cells = await tab
+    .locator("#front tbody tr")
+    .evaluateAll((all) => all.map((row) => [...row.children].map((c) => c.textContent)));
+  assert.equal(cells.length, points.length);
+  points.forEach(({ objective, multiplier, id }, k) => {
+    const [u, v, slope, position, number_] = cells[k];
+    same(number(u), 1e3 * objective[psi], 5);
+    same(number(v), objective[ratio], 5);
+    assert.equal(minimised, psi);
+    if (multiplier[ratio] === null) assert.equal(slope, "–");
+    else same(number(slope), -1e3 * multiplier[ratio], 3);
+    assert.deepEqual([position, number_], [k === knee ? "knee" : "on the front", String(id)]);
+  });
+  const dots = await picture.locator("path.dots").evaluateAll((all) => all.map((p) => p.getAttribute("d")));
+  assert.ok(dots.some((d) => d.match(/h0/g).length === points.length), `no mark for each point: ${dots}`);
   assert.deepEqual(await picture.locator(".label").allTextContents(), ["ψ (mm)", "ratio boundary"]);
   const highest = number(await picture.locator("text[text-anchor=end]").last().textContent());
   assert.ok(highest < Math.max(...points.map(({ objective }) => objective[ratio])) && initial[ratio] > 1.01);
@@ -224,13 +242,43 @@ export async function checkFront(tab, made) {
   same(number(caption.match(/ratio boundary of the initial design \(([\d.]+)\)/)[1]), initial[ratio], 6);
   await picture.focus();
   await tab.keyboard.press("End");
-  const [, said] = (await tab.locator("#front .tip strong").textContent()).match(/: ψ ([\d.]+) mm/);
-  same(number(said), 1e3 * points.at(-1).objective[psi], 6);
+  const [, x, y] = (await tab.locator("#front .tip strong").textContent()).match(/^ψ ([\d.]+) mm, ratio boundary (.*)$/);
+  same(number(x), 1e3 * points.at(-1).objective[psi], 6);
+  same(number(y), points.at(-1).objective[ratio], 6);
   await tab.keyboard.press("Escape");
   assert.match(await tab.locator("#front code").textContent(), /^hifdm run .* --point .*\.h5:\d -o point\d\.h5$/);
-  const whose = tab.locator("#answer + #whose:has(+ .figures)"); // before the first figure that is of no point
-  assert.match(await whose.textContent(), /^This page shows the shape after form-finding\. .* is not a point /);
-  assert.equal(await whose.locator("code").textContent(), await tab.locator("#front code").textContent());
+  assert.equal(await tab.locator("#net h2").textContent(), "The net after form-finding");
+  assert.match(await tab.locator("#net h2 + #whose").textContent(), / after form-finding\. .* is not a point /);
+  assert.equal(await tab.locator("main > .figures").count(), 0, "figures of a shape that is no point");
   const row = tab.locator("#summary tr", { hasText: psi });
   same(number(await row.locator(".number").first().textContent()), 1e3 * initial[psi], 5);
+  await checkJudgedFront(browser, made, folder);
+}
+
+// Many points, with verdicts: each has its mark, of the colour of its verdict. In a copy of the page with such points.
+async function checkJudgedFront(browser, made, folder) {
+  const page = readFileSync(made.html, "utf8"),
+    data = JSON.parse(page.match(DATA)[2]),
+    { front } = data.summary,
+    [first] = front.points;
+  front.points = Array.from({ length: 40 }, (_, k) => ({
+    ...first,
+    id: k + 1,
+    objective: Object.fromEntries(Object.keys(first.objective).map((key, j) => [key, j ? 3 - k / 40 : 0.01 + k / 1e4])),
+    n_failed: k < 30 ? 0 : 2,
+    n_undecided: k < 10 ? 1 : 0,
+  }));
+  const copy = page.replace(DATA, (_, head, old, tail) => head + JSON.stringify(data) + tail);
+  await openCopy(browser, folder, "judged", copy, async (tab) => {
+    const dots = await tab.locator("#front svg[tabindex] path.dots").evaluateAll((all) =>
+      all.map((p) => p.getAttribute("d").match(/h0/g).length),
+    );
+    for (const n of [40, 20, 10]) assert.ok(dots.includes(n), `${n} points of a kind, but marks of ${dots}`);
+    const legend = await tab.locator("#front .legend").innerText();
+    for (const word of ["passes", "fails", "undecided"]) assert.ok(legend.includes(word), legend);
+    assert.deepEqual(
+      await tab.locator('#front td[data-label="Verdict"]').evaluateAll((all) => [...new Set(all.map((c) => c.innerText))]),
+      ["undecided (1)", "pass"],
+    );
+  });
 }

@@ -206,7 +206,7 @@ async function test(browser, page) {
     if (page.rounding) await checkRounding(tab, made);
     else await checkMap(tab, made);
     if (page.facets) await checkFacets(tab, page, made);
-    if (page.name === "front") await checkFront(tab, made);
+    if (page.name === "front") await checkFront(browser, tab, made, folder);
     if (page.measured) await checkAdjust(tab, made, changes);
     if (page.pattern) await checkPattern(tab, page, made);
     if (made.summary.requirements) await checkRequirements(tab, made);

@@ -8,13 +8,13 @@ const objectiveScale = (key) => (storedUnit(key) === "m" ? 1e3 : 1);
 const objectiveLabel = (key) => objectiveName(key) + (objectiveUnit(key) ? ` (${objectiveUnit(key)})` : "");
 const objectiveText = (key, value) => `${fmt(value, 6)} ${objectiveUnit(key)}`.trim();
 
+const valueIn = (objective, key) =>
+  typeof objective[key] === "number" ? objectiveScale(key) * objective[key] : null;
+
 // Returns the points of the front in ascending order of objective a, with the initial design among them. A series
 // without a value at a point has undefined there, so its line continues.
 function frontPositions(front, a, b) {
-  const position = (objective) => {
-    const at = (key) => (typeof objective[key] === "number" ? objectiveScale(key) * objective[key] : null);
-    return { x: at(a), y: at(b) };
-  };
+  const position = (objective) => ({ x: valueIn(objective, a), y: valueIn(objective, b) });
   const positions = front.points
     .map((point, i) => ({ ...position(point.objective), point, i }))
     .filter(({ point }) => point.mark !== "failed");
@@ -23,17 +23,48 @@ function frontPositions(front, a, b) {
   return positions.filter(({ x }) => typeof x === "number").sort((p, q) => p.x - q.x);
 }
 
-// Formats the changes of the minimised objective per unit of the others, where they are known.
-function slopesOf(front, point) {
-  return Object.entries(point.multiplier || {})
-    .filter(([key, value]) => key !== front.minimised && typeof value === "number")
-    .map(
-      ([key, value]) =>
-        `; ${fmt(value ? (-value * objectiveScale(front.minimised)) / objectiveScale(key) : 0, 3)} ` +
-        `${objectiveUnit(front.minimised)} of ${objectiveName(front.minimised)} per ` +
-        `${objectiveUnit(key) || "unit"} of ${objectiveName(key)}`,
-    )
-    .join("");
+// Returns the name of a point: its values.
+const pointValues = (objective) =>
+  Object.entries(objective)
+    .map(([key, value]) => `${objectiveName(key)} ${objectiveText(key, objectiveScale(key) * value)}`)
+    .join(", ");
+
+// Returns the verdict on a point by its counts of requirements, or "" if the file has none.
+const verdictOn = ({ n_failed: failed, n_undecided: open }) =>
+  typeof failed !== "number" ? "" : failed ? "fail" : open ? "undecided" : "pass";
+const MARK = { on: "on the front", dominated: "dominated by another point", failed: "no feasible design" };
+
+// Returns the table of the points, with the change of the minimised objective per unit of each other one.
+function frontTable(front, names) {
+  const { points, minimised } = front,
+    number = (name, of, digits) => ({ name, number: true, of, show: (i) => digitsOf(of(i), digits) });
+  const slopes = names.filter((key) => minimised && key !== minimised).map((key) => {
+    const unit = `${objectiveUnit(minimised) || "1"} per ${objectiveUnit(key) || "1"}`,
+      scale = objectiveScale(minimised) / objectiveScale(key);
+    const of = ({ multiplier = {} }) => (typeof multiplier[key] === "number" ? -scale * multiplier[key] || 0 : null);
+    return number(`${objectiveName(minimised)} per ${objectiveName(key)} (${unit})`, (i) => of(points[i]), 3);
+  });
+  const position = (i) => (i === front.knee ? "knee" : MARK[points[i].mark] || points[i].mark),
+    verdict = (i) => {
+      const { n_failed: failed, n_undecided: open } = points[i],
+        n = failed || open;
+      return verdictOn(points[i]) + (n ? ` (${fmtCount(n)})` : "") || "–";
+    };
+  return sortableTable({
+    caption: "Points of the front",
+    columns: [
+      ...names.map((key) => {
+        const of = (i) => valueIn(points[i].objective, key);
+        return number(objectiveLabel(key), of, 5);
+      }),
+      ...slopes,
+      { name: "Position", of: position, show: position },
+      ...(points.some(verdictOn) ? [{ name: "Verdict", of: verdict, show: verdict }] : []),
+      { name: "Number for --point", number: true, of: (i) => points[i].id, show: (i) => fmtCount(points[i].id) },
+    ],
+    n: points.length,
+    by: -1,
+  }).node;
 }
 
 function frontChart(front, a, b) {
@@ -53,8 +84,12 @@ function frontChart(front, a, b) {
     ({ point }) =>
       !!point && point.mark === mark;
   const all = [
-    series("front", "--one", !isCurve, marked("on")),
+    { ...series("front", "--one", !isCurve, marked("on")), isMarked: true },
     series("dominated", "--ghost", true, marked("dominated")),
+    ...Object.entries(VERDICTS).map(([verdict, [name, , colour]]) => ({
+      ...series(name, colour, true, ({ point }) => !!point && verdictOn(point) === verdict),
+      size: 7,
+    })),
     { ...series("knee", "--three", true, ({ point, i }) => !!point && i === front.knee), size: 9 },
     { ...series("initial design", "--two", true, ({ point }) => !point), free: isFar },
   ];
@@ -70,10 +105,7 @@ function frontChart(front, a, b) {
     counted: false,
     log: false,
     head: (i) =>
-      positions[i].point
-        ? `point ${positions[i].point.id}: ${objectiveName(a)} ${objectiveText(a, positions[i].x)}` +
-          slopesOf(front, positions[i].point)
-        : `initial design: ${objectiveName(a)} ${objectiveText(a, positions[i].x)}`,
+      positions[i].point ? pointValues(positions[i].point.objective) : `initial design: ${pointValues(front.initial)}`,
     series: all.filter((s) => s.values.some((v) => v !== undefined)),
   });
 }
@@ -97,26 +129,19 @@ const takeText = (front) =>
     el("code", {}, pointCommand(front)),
   );
 
-// Explains which shape the page shows, because a front has no shape of its own.
-function writeWhose(more) {
-  const { front } = summary;
-  if (!front) return;
-  const isFormFinding = resultStage === "form",
-    asBuilt = summary.load_cases || summary.tolerance;
-  main.append(
-    el(
-      "p",
-      { class: "whose", id: "whose" },
-      isFormFinding
-        ? "This page shows the shape after form-finding. The shape after form-finding is not a point of the Pareto " +
-            "front."
-        : "This page shows the point of the Pareto front with the minimum " +
-            `${objectiveName(Object.keys(front.initial)[0])}.` +
-            `${asBuilt ? " The as-built nets are computed for the shape after form-finding." : ""}`,
-      more.map((text) => ` Of this shape: ${text[0].toLowerCase()}${text.slice(1)}`),
-      " To get a page for one point, run this command: ",
-      el("code", {}, pointCommand(front)),
-    ),
+// Explains which shape the page shows, because a front has no shape of its own. With two results, their table does.
+function whoseText(front) {
+  if (!front || !resultShape) return null;
+  const asBuilt = summary.load_cases || summary.tolerance;
+  return el(
+    "p",
+    { id: "whose" },
+    resultStage === "form"
+      ? "The sections from here on show the shape after form-finding. This shape is not a point of the front."
+      : "The sections from here on show the point of the front with the minimum " +
+          `${objectiveName(Object.keys(front.initial)[0])}.` +
+          `${asBuilt ? " The as-built nets are computed for the shape after form-finding." : ""}`,
+    data.gain_loss ? ` Of this shape: ${data.gain_loss}.` : "",
   );
 }
 
@@ -128,6 +153,7 @@ function writeOneDesign(front, names, point) {
   section(
     "front",
     "One design for all objectives",
+    other ? null : answerText("answer", data),
     el(
       "p",
       {},
@@ -158,6 +184,8 @@ function writeFront() {
   section(
     "front",
     "Front of the objectives",
+    other ? null : answerText("answer", data),
+    frontTable(front, names),
     el(
       "p",
       {},

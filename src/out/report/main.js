@@ -89,17 +89,21 @@ const figure = (name, value, unit) =>
   el("div", {}, el("dt", {}, name), el("dd", {}, value, unit && value !== "–" ? el("small", {}, unit) : null));
 
 // Writes the answer in the words of the program's summary; with two results, of both.
-function writeAnswer(id, of, front, name) {
+function answerText(id, of, name) {
   const said = [of.answer, of.gain_loss].filter((text) => text);
-  if (!said.length) return;
+  if (!said.length) return null;
   const [answer, ...more] = said.map(sentence);
-  const beside = more.length && !front ? el("small", {}, more) : null;
-  main.append(el("p", { class: "answer", id }, name ? `${name}: ` : "", answer, beside));
-  if (!other) writeWhose(more);
+  const beside = more.length && !summary.front ? el("small", {}, more) : null;
+  return el("p", { class: "answer", id }, name ? `${name}: ` : "", answer, beside);
+}
+function writeAnswers() {
+  if (!summary.front || other) main.append(answerText("answer", data, thisName) || "");
+  if (other) main.append(answerText("answer-other", other, otherName) || "");
 }
 
 function writeFigures() {
-  if (!resultNumbers || other) return; // of two results, the comparison has the figures
+  // Of two results, the comparison has the figures. A front has the table of its points.
+  if (!resultNumbers || other || summary.front) return;
   // Other objectives than ψ may raise ψ.
   const initial = summary.search && !summary.form.objectives && summary.search.initial_psi_m,
     list = [];
@@ -210,7 +214,8 @@ function writeNet() {
   };
   section(
     "net",
-    "The net",
+    summary.front && resultStage === "form" ? "The net after form-finding" : "The net",
+    whoseText(summary.front),
     shapes.length
       ? null
       : el("p", {}, "Because form-finding found no shape, the picture shows the net at its target positions."),
@@ -354,11 +359,12 @@ if (data.study) {
 } else {
   writeHead();
   writeRequirements();
+  if (!other) writeFront();
   writeMessages();
-  writeAnswer("answer", data, summary.front, thisName);
-  if (other) writeAnswer("answer-other", other, other.summary.front, otherName);
+  writeAnswers();
   writeFigures();
   writeOther();
+  if (other) writeFront();
   writeNet();
   writeAdjust(report.net);
   writeCables(report.net);
@@ -367,7 +373,6 @@ if (data.study) {
   writeLoadCases();
   writeDistributions();
   writeTolerance();
-  writeFront();
   writePattern();
   writeSummary();
   writeHistory(); // sections from here on describe the iterations
