@@ -191,6 +191,8 @@ static void print_adjustments(const job *j, FILE *f)
     const hf_adjustment *a = &j->adjustment;
     int n_doubtful = 0;
     if (a->n_turnbuckle)
+        hf_print_line(f, "turnbuckle adjustments for the workshop, in this order; above 0 lengthens the cable:");
+    if (a->n_turnbuckle)
         hf_print_line(f, "%5s  %-20s %13s  %10s %10s  %10s %11s", "order", "cable", "turnbuckle mm", "N before",
                       "N after", "RMS mm", "expected mm");
     for (int k = 0; k < a->n_turnbuckle; k++) {

@@ -110,12 +110,42 @@ export async function checkAdjust(tab, made, changes) {
   await tab.keyboard.press("Escape");
   const bar = await tab.locator("#net .bar").innerText();
   assert.match(bar, new RegExp(`^${adjustments.length} of .* have a turnbuckle adjustment$`));
+  await checkWorkshop(tab, made);
   await changes(tab, "a name of an adjustment", () => rows.first().getByRole("button").click());
   assert.equal((await tip(tab, "net")).heading, `cable ${adjustments[0].cable}`);
-  assert.ok(Math.abs(number((await tip(tab, "net")).turnbuckle) - adjustments[0].turnbuckle_mm) < 1e-9);
+  assert.ok(Math.abs(number((await tip(tab, "net"))["turnbuckle adjustment"]) - adjustments[0].turnbuckle_mm) < 1e-9);
   const deviation = tab.locator("#net").getByLabel("deviation", { exact: true });
   await changes(tab, "the colour of adjustments", () => deviation.check());
   await tab.reload();
+}
+
+// Only the table of adjustments, named for the workshop, has signed lengths or steps. Those of other tables have words
+// for their direction, and differences of designs are not on this page.
+async function checkWorkshop(tab, made) {
+  const name = "Turnbuckle adjustments for the workshop, in their order",
+    heads = async (place) => (await tab.locator(`${place} thead th`).allTextContents()).map((text) => text.trim());
+  assert.equal(await tab.locator("#adjust h3.after").first().textContent(), name);
+  const [, , move, steps, ...rest] = await heads("#adjust");
+  assert.deepEqual([move, steps], ["turnbuckle adjustment (mm)", "turnbuckle adjustment (steps)"]);
+  assert.ok(rest.every((head) => /(ψ|tension|gain|slack).*/.test(head)), rest.join("; "));
+  for (const table of await tab.locator("main table[aria-label]").all()) {
+    const signed = (await table.locator("td").allTextContents()).some((text) => /^[+−]\d/.test(text)),
+      caption = await table.getAttribute("aria-label");
+    if (signed) assert.equal(caption, name, `${caption} has signed values`);
+  }
+  const cables = await heads("#cables");
+  assert.ok(!cables.some((head) => /^unstressed:|per mm|turn/.test(head)), cables.join("; "));
+  assert.match(await tab.locator("#cables > p").textContent(), /not turnbuckle adjustments\. The workshop follows/);
+  const column = cables.indexOf("estimated length error (mm)"),
+    rows = await tab.locator("#cables tbody tr").evaluateAll((all) => all.map((r) => [...r.children].map((c) => c.textContent))),
+    errors_m = await tab.evaluate(() => Array.from(data.adjust.error_m)),
+    ids = new Map(made.cables.map(({ id }, e) => [id, e]));
+  for (const cells of rows) {
+    const error_m = errors_m[ids.get(cells[0])],
+      [, size, direction] = cells[column].match(/^([\d.]+) too (long|short)$/);
+    assert.equal(direction, error_m > 0 ? "long" : "short");
+    assert.ok(Math.abs(number(size) - 1e3 * Math.abs(error_m)) < 6e-3 * Math.max(...errors_m.map((v) => 1e3 * Math.abs(v))));
+  }
 }
 
 // Terms, and those figures of the summary that `hifdm explain` knows, in its words.

@@ -2,6 +2,7 @@
 
 const adjust = data.adjust;
 const cableAt = adjust && new Map(net.cable_id.map((id, e) => [id, e]));
+const WORKSHOP = "Turnbuckle adjustments for the workshop, in their order";
 // Adjustments by cable, for the cables that have one.
 const adjustmentOf = new Map(adjust ? adjust.adjustments.map((row) => [cableAt.get(row.cable), row]) : []);
 
@@ -14,9 +15,9 @@ const ADJUST_END = {
 };
 const adjustments = (n) => (n === 1 ? "one turnbuckle adjustment" : `${fmtCount(n)} turnbuckle adjustments`);
 
-
 const inMm = (v, digits = 4) => `${Math.abs(1e3 * v) < RESOLVED_MM ? rounded(0, digits) : fmt(1e3 * v, digits)} mm`,
-  signed = (v, digits = 5) => (v > 0 ? "+" : "") + fmt(v, digits);
+  signed = (v, digits = 5) => (v > 0 ? "+" : "") + fmt(v, digits),
+  tooWhat = (v) => `too ${v > 0 ? "long" : "short"}`;
 
 function adjustText(name) {
   const expected = (value, sigma) => `expected: ${inMm(value)} ± ${fmt(1e3 * sigma, 2)}`;
@@ -98,18 +99,18 @@ function adjustmentsTable(name, choose) {
     column = (heading, of, show) => ({ name: heading, number: true, of, show: (k) => show(of(k)) }),
     real = (heading, key, digits, options) => numberColumn(heading, rows.map((row) => row[key]), digits, options);
   return sortableTable({
-    caption: "Adjustments in their order",
+    caption: WORKSHOP,
     columns: [
       column("order", (k) => k + 1, fmtCount),
       { name: "cable", of: (k) => rows[k].cable, show: (k) => cableLink(cableAt.get(rows[k].cable), choose) },
-      real("turnbuckle (mm)", "turnbuckle_m", 4, { unit: 1e3, isChange: true }),
-      column("steps", (k) => rows[k].steps, (v) => signed(v, 9)),
+      real("turnbuckle adjustment (mm)", "turnbuckle_m", 4, { unit: 1e3, isChange: true }),
+      column("turnbuckle adjustment (steps)", (k) => rows[k].steps, (v) => signed(v, 9)),
       real("tension before (N)", "tension_before_N", 4),
       real("tension after (N)", "tension_after_N", 4),
       real(`${name} afterwards (mm)`, "predicted_m", 4, { unit: 1e3 }),
-      real("expected (mm)", "expected_m", 4, { unit: 1e3 }),
-      real("gain (mm)", "gain_m", 3, { unit: 1e3 }),
-      real("± (mm)", "gain_sigma_m", 2, { unit: 1e3 }),
+      real(`expected ${name} (mm)`, "expected_m", 4, { unit: 1e3 }),
+      real(`gain of ${name} (mm)`, "gain_m", 3, { unit: 1e3 }),
+      real("± of the gain (mm)", "gain_sigma_m", 2, { unit: 1e3 }),
       ...(rows.some(({ slack }) => slack) ? [column("slack cables", (k) => rows[k].slack, fmtCount)] : []),
     ],
     n: rows.length,
@@ -156,7 +157,6 @@ function outliers(choose) {
     shared = adjust.shared.filter((number) => number.sigmas > OUTLYING),
     left = cables.length - NAMED_MOST;
   const sigmas = (v) => `${fmt(v, 3)} σ`,
-    tooWhat = (v) => `too ${v > 0 ? "long" : "short"}`,
     byPositions = (v, error) =>
       typeof v === "number"
         ? `; ${inMm(Math.abs(v), 3)}${error * v < 0 ? ` ${tooWhat(v)}` : ""} by the positions alone`
@@ -208,7 +208,7 @@ function writeAdjust(view) {
     ...(adjust.adjustments.length
       ? [
           el("div", { class: "charts" }, adjustChart(name)),
-          el("h3", { class: "after" }, "Adjustments in their order"),
+          el("h3", { class: "after" }, WORKSHOP),
           el(
             "p",
             {},

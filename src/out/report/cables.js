@@ -1,4 +1,7 @@
-// The table of cables, with the columns that show which cables to adjust and by how much.
+// The table of cables: tensions and lengths. No column is a turnbuckle adjustment.
+
+// Returns the object with the figures of a design, which are not shown beside those of a measured net.
+const ofDesign = () => (adjust ? {} : net);
 
 // Returns the names of the families of every cable.
 function allFamilies() {
@@ -26,20 +29,29 @@ const RESOLVED_RATIO = 1e-9; // relative size of rounding of tensions
 const cableColumn = (name, of, digits, options) =>
   numberColumn(name, Array.from({ length: net.n_cable }, (_, e) => of(e)), digits, options);
 
+// Returns the column of the estimated length errors. Words state their direction, because a workshop could take a sign
+// for a turnbuckle adjustment.
+function errorColumn() {
+  const size = (e) => Math.abs(adjust.error_m[e]),
+    column = cableColumn("estimated length error (mm)", size, 3, { unit: 1e3 });
+  return column && { ...column, size: true, show: (e) => `${column.show(e)} ${tooWhat(adjust.error_m[e])}` };
+}
+
 // Returns heading and values of a column of differences of unstressed lengths. They are those of the result from the
 // form-finding, and without a search those from the same net at its target positions.
 function lengthChange(before, after) {
   const length = after.unstressed_length_m;
   if (!length || (before !== after && !before.unstressed_length_m)) return null;
-  if (before === after) return ["unstressed minus target (mm)", (e) => after.unstressed_minus_target_m[e]];
-  return [`unstressed minus ${before.name} (mm)`, (e) => length[e] - before.unstressed_length_m[e]];
+  if (before === after) return [`unstressed: ${after.name} − target (mm)`, (e) => after.unstressed_minus_target_m[e]];
+  return [`unstressed: ${after.name} − ${before.name} (mm)`, (e) => length[e] - before.unstressed_length_m[e]];
 }
 
 function cableColumns(before, after, families, choose) {
   const two = before !== after,
     ofAfter = otherShape ? `, ${after.name}` : "", // only with two results
     length = after.unstressed_length_m,
-    lengthened = lengthChange(before, after);
+    { psi_by_cut: psiByCut, cable_share: share } = ofDesign(),
+    lengthened = adjust ? null : lengthChange(before, after);
   const family = families.map((names, e) => names.join(", ") || groupOf(e));
   const change = (e) => after.tension_N[e] - before.tension_N[e],
     rounding = RESOLVED_RATIO * Math.max(...(range(before.tension_N) || [0]).map(Math.abs));
@@ -54,11 +66,9 @@ function cableColumns(before, after, families, choose) {
     lengthened
       ? cableColumn(lengthened[0], lengthened[1], 4, { unit: 1e3, isChange: true, rounding: RESOLVED_MM / 1e3 })
       : null,
-    adjust ? cableColumn("length error (mm)", (e) => adjust.error_m[e], 3, { unit: 1e3, isChange: true }) : null,
-    net.psi_by_cut
-      ? cableColumn("ψ per mm (mm per mm)", (e) => net.psi_by_cut[e], 3, { isChange: true })
-      : null,
-    net.cable_share ? cableColumn("share of the error (%)", (e) => net.cable_share[e], 3, { unit: 100 }) : null,
+    adjust ? errorColumn() : null,
+    psiByCut ? cableColumn("ψ per mm (mm per mm)", (e) => psiByCut[e], 3, { isChange: true }) : null,
+    share ? cableColumn("share of the error (%)", (e) => share[e], 3, { unit: 100 }) : null,
   ].filter((column) => column);
 }
 
@@ -94,12 +104,16 @@ function writeCables(view) {
       : two
         ? `The table lists the cable tensions after form-finding and in the result (${after.name}).`
         : null,
-    columns.some(({ name }) => name.startsWith("unstressed minus"))
-      ? `For each cable, the table lists the change of the unstressed length from its value ${base}.`
+    columns.some(({ name }) => name.startsWith("unstressed: "))
+      ? `The last lengths compare the unstressed lengths of two designs (here and ${base}). They are not turnbuckle ` +
+        "adjustments."
       : null,
-    adjust ? "A positive length error means that the cable is too long." : null,
-    net.psi_by_cut ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack." : null,
-    net.cable_share
+    adjust
+      ? "The length errors are not turnbuckle adjustments." +
+        (adjust.adjustments.length ? ` The workshop follows the table “${WORKSHOP}”.` : "")
+      : null,
+    ofDesign().psi_by_cut ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack." : null,
+    ofDesign().cable_share
       ? "The share of the error is a first-order estimate of the contribution of each cable to ψ²."
       : null,
   ].filter((text) => text);

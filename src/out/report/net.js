@@ -443,8 +443,9 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     const shape = state.shape,
       rows = [["group", groupOf(e), ""]];
     if (setsOf[e].length) rows.push(["sets", setsOf[e].map((k) => net.sets[k].name).join(", "), ""]);
-    if (adjust) rows.push(["estimated length error", `${signed(1e3 * adjust.error_m[e], 3)} mm`, ""]);
-    if (adjustmentOf.has(e)) rows.push(["turnbuckle", `${signed(1e3 * adjustmentOf.get(e).turnbuckle_m)} mm`, ""]);
+    if (adjust) rows.push(["estimated length error", `${inMm(Math.abs(adjust.error_m[e]), 3)} ${tooWhat(adjust.error_m[e])}`, ""]);
+    if (adjustmentOf.has(e))
+      rows.push(["turnbuckle adjustment", `${signed(1e3 * adjustmentOf.get(e).turnbuckle_m)} mm`, ""]);
     if (shape)
       rows.push(
         ["tension", `${fmt(shape.tension_N[e], 6)} N${shape.isSlack(e) ? ", slack" : ""}`, "tension_N"],
