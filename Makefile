@@ -92,7 +92,7 @@ LIB_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(KERNELS),$(call sources,$(
 # The page of `hifdm report`: its parts in order, as three strings that report.h declares.
 PAGE := $(addprefix src/out/report/,head.html page.css body.html \
           data.js scale.js chart.js table.js net_fast.js net.js net_hand.js cables.js map.js sections.js \
-          front.js pattern.js adjust.js tolerance.js requirements.js compare.js study.js main.js)
+          front.js pattern.js adjust.js tolerance.js requirements.js tensions.js compare.js study.js main.js)
 APP_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(call sources,$(APP_ROOMS))) $(BUILD)/report_page_text.o \
            $(BUILD)/words_text.o
 TEST_OBJ := $(patsubst %.c,$(BUILD)/%.o,tests/run_tests.c tests/support.c tests/calls.c tests/guards.c \

@@ -1,9 +1,11 @@
 /* Implements report_required.h. */
 #include "out/report_required.h"
 
-#include "base/json.h"
 #include "built/required.h"
+#include "store/store_open.h"
+#include "store/store_read.h"
 #include "store/store_series.h"
+#include <hifdm/config.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -115,4 +117,31 @@ void hf_report_curves_write(const hf_summary *s, const hf_report_curves *curves,
         fputs("]}", f);
     }
     fputc(']', f);
+}
+
+static void write_limit(const hf_limit_settings *row, hf_json *j)
+{
+    if (row->figure != HF_LIMIT_TENSION) return;
+    hf_json_open(j, NULL, '{');
+    hf_json_text(j, "set", row->set);
+    hf_json_number(j, "at_least", isfinite(row->lower) ? row->lower : (double)NAN);
+    hf_json_number(j, "at_most", isfinite(row->upper) ? row->upper : (double)NAN);
+    hf_json_close(j, '}');
+}
+
+void hf_report_limits_write(const char *path, hf_json *j)
+{
+    hf_case *c = calloc(1, sizeof *c);
+    if (!c) return;
+    hf_hdf5 io = hf_store_open_result(path, NULL);
+    bool is_known = io.status == HF_OK && hf_store_parse_case(&io, path, c);
+    is_known = hf_store_close_result(&io) == HF_OK && is_known;
+    if (is_known && c->optimize.n_limit) {
+        hf_json_open_line(j, "", "limits", '[');
+        for (int k = 0; k < c->optimize.n_limit; k++)
+            write_limit(&c->optimize.limit[k], j);
+        hf_json_close(j, ']');
+    }
+    hf_case_free(c);
+    free(c);
 }

@@ -2,6 +2,7 @@
  * their samples. */
 #pragma once
 
+#include "base/json.h"
 #include <hifdm/status.h>
 #include <hifdm/summary.h>
 #include <stdio.h>
@@ -28,6 +29,10 @@ typedef struct {
 hf_status hf_report_curves_read(const char *path, const hf_summary *summary, hf_report_curves *curves,
                                 hf_messages *messages);
 void hf_report_curves_free(hf_report_curves *curves);
+
+/* Writes the member "limits": set and bounds of each row of optimize.limits about tensions. Writes nothing if the case
+ * has none, or keys that this version does not know. */
+void hf_report_limits_write(const char *path, hf_json *json);
 
 /* Writes the member "required": name and curves of each row, in the order of the case. Writes nothing without rows. */
 void hf_report_curves_write(const hf_summary *summary, const hf_report_curves *curves, FILE *file);

@@ -438,6 +438,7 @@ static void write_data(const void *context, FILE *f)
     fprintf(f, ",\"n_free\":%d,\"n_variable\":%d,\"pretension_N\":", s->n_free, has_variables ? s->n_variable : 0);
     hf_json_value(s->has_own_tensions ? (double)NAN : s->pretension_N, 17, f);
     hf_report_curves_write(s, &p->required, f);
+    hf_report_limits_write(p->path, &j);
     write_figures(&j);
     write_objective_units(s, &j);
     write_words(&j);

@@ -178,6 +178,20 @@ export const pages = [
     ],
   },
   {
+    name: "limits", // of the search, with a load case
+    text: cylinder(
+      [4, 5],
+      "load_cases: [{name: cold, temperature_K: -5}]\ncables: [{expansion_per_K: -2e-6}]\noptimize: {method: lm, " +
+        "limits: [{figure: tension, set: inner, bounds: [2, 66]}]}\n",
+    ).replace("scene:", "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5"),
+    sections: ["net", "cables", "map", "tensions", "load-cases", "summary", "form-finding", "provenance"],
+    maybe: ["search"],
+    says: {
+      '#tensions tr:has-text("inner") >> nth=0 >> td >> nth=-2': "2 to 66",
+      '#tensions tr:has-text("inner") >> nth=1 >> td >> nth=-2': "–", // in the load case
+    },
+  },
+  {
     name: "compare",
     look: true,
     source: "configs/chen2022.yaml",

@@ -1,5 +1,6 @@
 // Parts of a page that only some results have.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { csv, DATA, number, openCopy, picture, same, settle, tip } from "./see.mjs";
@@ -205,6 +206,7 @@ export async function checkRequirements(tab, made) {
     if (row.share === null || states * ends > 1 || row.at_most === null) return;
     assert.ok(at[i][0][2] === 400 && Math.abs(at[i][0][1] - 100 * row.yield) < 100 / 400, `${at[i]}: ${row.yield}`);
   });
+  await checkTensions(tab, made);
   assert.equal(await tab.locator("#distributions .chart").count(), 4);
   await tab.locator("#distributions button").click();
   const shown = await tab.locator("#distributions .chart h3").allTextContents();
@@ -213,6 +215,51 @@ export async function checkRequirements(tab, made) {
     sorted.filter((row) => row.share !== null).map((row) => row.figure),
   );
   await tab.reload();
+}
+
+// Each set has a row in each load case: its tensions, those of the samples, the tightest required bounds, and a picture
+// with a mark at each of them.
+async function checkTensions(tab, made) {
+  const cells = await tab
+      .locator("#tensions tbody tr")
+      .evaluateAll((all) => all.map((row) => [...row.children].map((c) => c.textContent))),
+    stored = made.summary.requirements.filter((row) => row.figure === "tension");
+  const ofShape = await tab.evaluate(() =>
+    Object.fromEntries(data.shapes.map((s) => [s.load_case || "nominal", Array.from(s.tension_N)])),
+  );
+  assert.deepEqual(Object.keys(ofShape), ["nominal", "cold"]);
+  for (const set of ["inner", "boundary"])
+    for (const [state, tension_N] of Object.entries(ofShape)) {
+      const [, , least, most, few, many, required] = cells.find(([a, b]) => a === set && b === state),
+        own = tension_N.filter((_, e) => made.cables[e].group === set),
+        rows = stored.filter((row) => row.set === set && ["all", state].includes(row.load_case));
+      same(number(least), Math.min(...own), 4);
+      same(number(most), Math.max(...own), 4);
+      const low = Math.max(...rows.map((row) => row.at_least ?? -Infinity)),
+        high = Math.min(...rows.map((row) => row.at_most ?? Infinity)),
+        text = low > -Infinity ? `${low} to ${high}` : high < Infinity ? `≤ ${high}` : "–";
+      assert.equal(required, text);
+      for (const [shown, is_minimum, part] of [
+        [few, true, 0.05],
+        [many, false, 0.95],
+      ]) {
+        const name = `/tolerance/load_case/${state}/tension_${is_minimum ? "min" : "max"}_${set}`,
+          samples = samplesOf(made, name);
+        if (!samples) assert.equal(shown, "–", name);
+        else same(number(shown), samples[Math.ceil(part * samples.length) - 1], 2); // the page has 400 of 600
+      }
+    }
+  const row = tab.locator("#tensions tbody tr", { hasText: "inner" }).first();
+  assert.equal(await row.locator("svg .bound").count(), 2);
+  assert.equal(await row.locator("svg .tensions").count(), 1);
+}
+
+// Returns the sorted values of a data set, or null if the file has none.
+function samplesOf(made, name) {
+  const read = "import h5py,json,sys;f=h5py.File(sys.argv[1]);n=sys.argv[2];print(json.dumps(sorted(f[n][:].ravel()) if n in f else None))";
+  return JSON.parse(
+    execFileSync("/usr/bin/python3", ["-c", read, join(made.folder, "result.h5"), name], { encoding: "utf8" }),
+  );
 }
 
 // Bars as high as the samples are many, a line for each figure at its place, and the cables of the file.

@@ -1,4 +1,4 @@
-// Contents: histories, tensions, tables.
+// Contents: histories, tables.
 
 // ---- histories ----
 
@@ -195,60 +195,6 @@ function writeCoupling() {
         "ψ is the RMS distance of the inner nodes from their target positions.",
         { floor: RESOLVED_MM },
       ),
-    ),
-  );
-}
-
-// ---- tensions ----
-
-function tensionChart(group) {
-  const name = `${group === "inner" ? "Inner" : "Boundary"} cables`,
-    of = Array.from({ length: net.n_cable }, (_, e) => e).filter((e) => groupOf(e) === group);
-  if (!of.length) return null;
-  const colour = { form: "--one", search: "--two", refine: "--three", other: "--four" };
-  const shapes = data.shapes.filter((s) => !s.load_case),
-    [low, high] = range(shapes.flatMap((s) => of.map((e) => s.tension_N[e]))) || [0, 1];
-  if (high - low < 1e-6 * high)
-    return el(
-      "div",
-      {},
-      el("h3", {}, name),
-      el(
-        "p",
-        {},
-        `${of.length > 1 ? `All ${fmtCount(of.length)} have` : `${shown(net.cable_id[of[0]])} has`} ` +
-          `${digitsOf(high, 5)} N${shapes[1] ? " in every shape" : ""}.`,
-      ),
-    );
-  return chart({
-    title: name,
-    xLabel: "cable number",
-    yLabel: "tension (N)",
-    unit: "N",
-    x: of.map((_, k) => k + 1),
-    head: (k) => `cable ${net.cable_id[of[k]]}`,
-    series: shapes.map((s, k) => ({
-      name: s.name,
-      stored: "tension_N",
-      values: of.map((e) => s.tension_N[e]),
-      colour: colour[s.stage],
-      dots: true,
-      size: (of.length > 300 ? 2.5 : 4) + 2 * (shapes.length - 1 - k), // larger marks below others remain visible
-    })),
-  });
-}
-
-function writeTensions() {
-  if (!data.shapes.length) return;
-  section(
-    "tensions",
-    "Tensions",
-    el("p", {}, "Each mark is one cable. The cable numbers of each group follow the order of the result file."),
-    el(
-      "div",
-      { class: "charts" },
-      tensionChart("inner"),
-      tensionChart("boundary"),
     ),
   );
 }
