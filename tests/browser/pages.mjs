@@ -11,6 +11,7 @@
 //   other: how the case of a second result differs, with which it is compared; unlike: in its figures, too
 //   fails: a run of it ends without a feasible design
 //   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
+//   overlay: a load case is drawn over the net
 //   look: its looks are checked, and its sizes are in sizes.json
 //   judged: how the margin over the axes is drawn, as a map or as a line
 //   study: how many points; leads: the axis that matters most, of two; along the other one nothing changes
@@ -186,6 +187,7 @@ export const pages = [
     ).replace("scene:", "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5"),
     sections: ["net", "cables", "map", "tensions", "load-cases", "summary", "form-finding", "provenance"],
     maybe: ["search"],
+    overlay: true,
     says: {
       '#tensions tr:has-text("inner") >> nth=0 >> td >> nth=-2': "2 to 66",
       '#tensions tr:has-text("inner") >> nth=1 >> td >> nth=-2': "–", // in the load case

@@ -77,6 +77,57 @@ export async function checkNet(tab, page, made) {
   await tab.reload();
 }
 
+// A load case over the nominal net: its cables are drawn in its colour where its displacements from the shape put them,
+// enlarged by the factor that the page states, which draws them as at most a twentieth of the net.
+export async function checkOverlay(tab) {
+  const box = tab.locator("#overlay label").first(),
+    name = (await box.textContent()).trim(),
+    net = tab.locator("#net"),
+    choose = (label) => net.locator(`fieldset:not(#overlay) label:text-is("${label}") input`).check();
+  await choose("none");
+  await net.getByLabel("target positions").uncheck();
+  const middles = async (label) => {
+    await choose(label);
+    await settle(tab);
+    return tab.evaluate(() =>
+      Array.from({ length: 20 }, (_, k) => report.net.screenOf("cable", Math.floor((k * net.n_cable) / 20))),
+    );
+  };
+  const case_ = await middles(name),
+    form = await middles("form");
+  await changes(tab, "the load case over the net", () => box.locator("input").check());
+  const note = await net.locator("figcaption").textContent(),
+    said = note.match(/Displacements from this shape, enlarged ([\d\u202f]+) times: (.*)\. To rotate/),
+    factor = Number(said[1].replaceAll("\u202f", ""));
+  assert.equal(said[2].trim(), name);
+  const [scale, most_m, radius_m] = await tab.evaluate(() => {
+    const { state, radius } = report.net,
+      move = state.overlay[0].displacement_m.map((v, k) => v - state.shape.displacement_m[k]);
+    return [state.scale, Math.max(...move.map(Math.abs)), radius];
+  });
+  assert.ok(factor * most_m <= 0.1 * radius_m && factor * most_m > 0.03 * radius_m, `${factor} times ${most_m} m`);
+  const places = form.map((at, k) => at.map((v, i) => v + (factor / scale) * (case_[k][i] - v)));
+  const hits = await tab.evaluate((all) => {
+    const canvas = document.getElementById("net-canvas"),
+      copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height }),
+      c = copy.getContext("2d", { willReadFrequently: true });
+    c.fillStyle = css(report.net.state.overlay[0].colour);
+    const colour = [1, 3, 5].map((k) => parseInt(c.fillStyle.slice(k, k + 2), 16));
+    c.drawImage(canvas, 0, 0);
+    const isHit = ([x, y]) => {
+      const { data: pixel } = c.getImageData(Math.round(x) - 2, Math.round(y) - 2, 5, 5);
+      return Array.from({ length: 25 }, (_, k) => pixel.slice(4 * k, 4 * k + 3)).some((rgb) =>
+        rgb.every((v, k) => Math.abs(v - colour[k]) < 40),
+      );
+    };
+    return all.filter(isHit).length;
+  }, places);
+  assert.equal(hits, places.length, "cables of the load case are elsewhere");
+  await changes(tab, "the load case off the net", () => box.locator("input").uncheck());
+  assert.ok(!(await net.locator("figcaption").textContent()).includes("Displacements from"));
+  await tab.reload();
+}
+
 export async function checkMap(tab, made) {
   assert.ok((await picture(tab, "map-canvas")).colours > 30, "the map is not drawn");
   const canvas = tab.locator("#map-canvas");

@@ -20,7 +20,7 @@ import {
   checkTolerance,
   checkWords,
 } from "./parts.mjs";
-import { checkFacets, checkHover, checkMap, checkNet } from "./pictures.mjs";
+import { checkFacets, checkHover, checkMap, checkNet, checkOverlay } from "./pictures.mjs";
 import { changes, csv, DATA, picture, settle } from "./see.mjs";
 import { checkPoints, checkSurfaceOfStudy, checkVerdicts } from "./study.mjs";
 import { checkCables, checkChange, checkCharts, checkSummary, checkUnknownFigure } from "./tables.mjs";
@@ -170,6 +170,7 @@ async function test(browser, page) {
   await tab.goto(url);
   await checkText(tab, page);
   let said = "";
+  if (page.overlay) await checkOverlay(tab);
   if (page.says) {
     for (const [place, text] of Object.entries(page.says)) {
       const said = await tab.locator(place).textContent();

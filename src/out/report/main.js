@@ -154,11 +154,13 @@ function button(text, name, act) {
 // Scale factors 1, 2, 5, 10, ... The first one chosen draws the maximum deviation as a twentieth of the size of the
 // net.
 const SCALES = Array.from({ length: 22 }, (_, k) => [1, 2, 5][k % 3] * 10 ** Math.floor(k / 3));
+function scaleWithin(most_m, radius) {
+  const scale = 1e3 * most_m > RESOLVED_MM ? (0.1 * radius) / most_m : 1;
+  return Math.max(0, SCALES.filter((s) => s <= scale).length - 1);
+}
 function firstScale(radius) {
   const stages = data.shapes.filter((s) => !s.load_case); // nodes of a load case may move much farther
-  const most = Math.max(0, ...stages.map((s) => range(s.distance_mm)[1])) / 1e3;
-  const scale = 1e3 * most > RESOLVED_MM ? (0.1 * radius) / most : 1;
-  return Math.max(0, SCALES.filter((s) => s <= scale).length - 1);
+  return scaleWithin(Math.max(0, ...stages.map((s) => range(s.distance_mm)[1])) / 1e3, radius);
 }
 
 function stage(kind, name, description) {
@@ -176,7 +178,9 @@ function stage(kind, name, description) {
 
 function writeNet() {
   const parts = stage("net", "The net in space", "net-keys"),
-    shapes = data.shapes;
+    shapes = data.shapes,
+    loadCases = shapes.filter((s) => s.load_case);
+  loadCases.forEach((s, k) => (s.colour = SERIES[(k + 1) % SERIES.length]));
   const output = el("output", {}),
     slider = el("input", {
       type: "range",
@@ -190,7 +194,13 @@ function writeNet() {
     const note = document.getElementById("scale-note");
     if (note) note.textContent = s === 1 ? "true to scale" : `enlarged ${fmtCount(s)} times`;
   };
-  const view = netView({ ...parts, scaleLabel });
+  const overlayLabel = (chosen, factor) => {
+    const keys = chosen.map(({ colour, name }) => [" ", colourKey(`var(${colour})`, name)]).flat(),
+      said = ` Displacements from this shape, enlarged ${fmtCount(factor)} times:`,
+      note = document.getElementById("overlay-note");
+    if (note) note.replaceChildren(...(keys.length ? [said, ...keys, "."] : []));
+  };
+  const view = netView({ ...parts, scaleLabel, overlayLabel });
   const set = (values) => {
     Object.assign(view.state, values);
     view.redraw();
@@ -198,6 +208,8 @@ function writeNet() {
   slider.value = firstScale(view.radius);
   set({ scale: SCALES[slider.value] });
   slider.addEventListener("input", () => set({ scale: SCALES[slider.value] }));
+  const overlay = (shape, on) =>
+    set({ overlay: loadCases.filter((s) => (s === shape ? on : view.state.overlay.includes(s))) });
   const options = [["target", "target"], ...shapes.map((s) => [s.stage, s.name])];
   const colours = [
     ["deviation", "deviation"],
@@ -227,6 +239,14 @@ function writeNet() {
       shapes.length ? el("label", {}, el("span", { class: "muted" }, "Deformation"), slider, output) : null,
       shapes.length ? tick("target positions", true, (v) => set({ target: v })) : null,
       data.truss ? tick("truss", true, (v) => set({ truss: v })) : null,
+      loadCases.length
+        ? el(
+            "fieldset",
+            { id: "overlay" },
+            el("legend", {}, "Drawn over it "),
+            loadCases.map((s) => tick(s.name, false, (on) => overlay(s, on))),
+          )
+        : null,
       familyTicks(showSet),
       el(
         "span",
@@ -288,6 +308,7 @@ function netCaption() {
     "Deformation from the target positions (grey) ",
     el("strong", { id: "scale-note" }),
     `. Squares are supports${trussNote()}. The colour scale covers the deviations of the inner nodes.`,
+    el("span", { id: "overlay-note" }),
   );
 }
 

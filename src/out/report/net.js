@@ -9,12 +9,19 @@ function familyColour(k) {
   return rgb(oklch(light, 0.14, 250 + (360 * k) / net.sets.length));
 }
 
+// Returns a line of a colour with its name.
+function colourKey(colour, name) {
+  const swatch = el("span", { class: "swatch" });
+  swatch.style.background = colour; // set here, because the security policy of the page forbids style attributes
+  return el("span", { class: "family" }, swatch, name);
+}
+
 // Draws the net in space. Lines of one colour are drawn in one call. Nothing is allocated while the net is turned.
 
 const MANY_LINES = 4000; // a net with more lines loses details while it is turned
 const REST_MS = 160; // time without a movement after which the details return
 
-function netView({ canvas, tip, bar, scaleLabel }) {
+function netView({ canvas, tip, bar, scaleLabel, overlayLabel }) {
   // fitted: the zoom follows the size of the picture
   const view = { yaw: -35, pitch: 32, zoom: 1, panX: 0, panY: 0, fitted: true };
   const state = {
@@ -26,6 +33,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     picked: null,
     chosen: -1, // the cable selected by a click, here or in the table
     off: new Set(), // sets of cables that are hidden
+    overlay: [], // shapes drawn over the shape, as lines of their colour
   };
   const target = data.net.position_m,
     n = net.n_node,
@@ -55,7 +63,8 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     second = new Int32Array(m),
     batchOf = new Int32Array(m),
     hasVisible = new Uint8Array(n); // nodes with a visible cable
-  let batches = [], // { colour, width }
+  let overlays = [], // { at, x, y, colour }
+    batches = [], // { colour, width }
     start = new Int32Array(1),
     nVisible = 0;
   const ink = {};
@@ -138,10 +147,25 @@ function netView({ canvas, tip, bar, scaleLabel }) {
     nVisible = start[lines.length];
   }
 
+  // Load cases are displaced from the shape that is drawn, because their displacements are often much smaller than its
+  // deviations from the target positions. All have the same factor.
+  function prepareOverlays(shape) {
+    const moves = state.overlay.map(({ displacement_m: d }) => d.map((v, k) => v - (shape ? shape.displacement_m[k] : 0))),
+      factor = SCALES[scaleWithin(Math.max(0, ...moves.flatMap((d) => range(d).map(Math.abs))), radius)];
+    overlays = moves.map((d, k) => ({
+      at: drawn.at.map((v, i) => v + factor * d[i]),
+      x: new Float32Array(n),
+      y: new Float32Array(n),
+      colour: css(state.overlay[k].colour),
+    }));
+    overlayLabel(state.overlay, factor);
+  }
+
   function prepare() {
     const shape = state.shape;
     for (const name of ["ink", "soft", "ghost", "one", "four", "alarm"]) ink[name] = css(`--${name}`);
     displace(drawn.at, target, shape && shape.displacement_m);
+    prepareOverlays(shape);
     if (truss)
       displace(beams.at, truss.position_m, shape && (shape.truss_displacement_m || truss.displacement_m));
     sortIntoBatches();
@@ -298,6 +322,12 @@ function netView({ canvas, tip, bar, scaleLabel }) {
       strokePart(c, 0, nVisible, ghost);
     }
     if (!isFast) drawCables(c);
+    for (const part of isFast ? [] : overlays) {
+      project(part);
+      c.strokeStyle = part.colour;
+      c.lineWidth = 1.3;
+      strokePart(c, 0, nVisible, part);
+    }
     if (!isFast || supports.length < MANY_LINES / 10) drawSupports(c);
     drawAxes(c);
   }
@@ -384,12 +414,7 @@ function netView({ canvas, tip, bar, scaleLabel }) {
         ...net.sets
           .map((set, k) => [set.name, familyColour(k)])
           .filter(([name]) => !state.off.has(name))
-          .map(([name, colour]) => {
-            const swatch = el("span", { class: "swatch" });
-            // set here, because the security policy of the page forbids style attributes
-            swatch.style.background = colour;
-            return el("span", { class: "family" }, swatch, familyName(name));
-          }),
+          .map(([name, colour]) => colourKey(colour, familyName(name))),
       );
     if (state.colour === "tension") drawBar(bar, sequential, limits(), "tension (N)");
     else drawBar(bar, sequential, limits(), "distance to target position (mm)", range(state.shape.distance_mm));
