@@ -166,7 +166,7 @@ export const pages = [
         "  - {figure: psi, at_most: 0.0783, load_case: nominal, share: 0.9}\n" +
         "  - {figure: psi, at_most: 0.0782, load_case: cold, share: 0.9}\n" +
         "  - {figure: psi, at_most: 0.08, load_case: all, share: 0.95}\n" +
-        "  - {figure: tension, set: inner, within: [1, 60], load_case: all, share: 0.95}\n" +
+        "  - {figure: tension, set: inner, within: [4, 60], load_case: all, share: 0.95}\n" +
         "  - {figure: tension, set: inner, at_most: 90}\n" +
         "  - {figure: tension, set: boundary, at_most: 900}\n" +
         "  - {figure: ratio, set: boundary, at_most: 90, load_case: cold}\n" +

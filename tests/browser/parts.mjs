@@ -207,6 +207,7 @@ export async function checkRequirements(tab, made) {
     assert.ok(at[i][0][2] === 400 && Math.abs(at[i][0][1] - 100 * row.yield) < 100 / 400, `${at[i]}: ${row.yield}`);
   });
   await checkTensions(tab, made);
+  await checkCostly(tab, made);
   assert.equal(await tab.locator("#distributions .chart").count(), 4);
   await tab.locator("#distributions button").click();
   const shown = await tab.locator("#distributions .chart h3").allTextContents();
@@ -252,6 +253,39 @@ async function checkTensions(tab, made) {
   const row = tab.locator("#tensions tbody tr", { hasText: "inner" }).first();
   assert.equal(await row.locator("svg .bound").count(), 2);
   assert.equal(await row.locator("svg .tensions").count(), 1);
+}
+
+// The tolerances are those of the requirement with the lowest yield, which is not that of psi: named in the heading, its
+// bars add up to all samples, and those beyond its bound to those that fail.
+async function checkCostly(tab, made) {
+  const rows = made.summary.requirements.map((row, i) => ({ ...row, i })).filter((row) => row.yield !== null),
+    least = rows.reduce((a, b) => (a.yield <= b.yield ? a : b)),
+    name = await tab.evaluate((i) => data.required[i].name, least.i);
+  assert.ok(least.figure !== "psi" && rows.some((row) => row.figure === "psi" && row.yield < 1));
+  assert.equal(await tab.locator("#tolerance h2").textContent(), `Tolerances: ${name}`);
+  const mark = await tab.locator("#tolerance .legend").innerText();
+  assert.ok(mark.includes(`at least ${least.at_least}`), mark);
+  assert.equal(await tab.locator("#tolerance .chart h3").textContent(), "Samples in load case cold"); // worse of two
+  const picture = tab.locator("#tolerance svg[tabindex]");
+  await picture.focus();
+  let sum = 0,
+    beyond = 0,
+    width = 0;
+  for (let k = 0, last = NaN; k < 40; k++) {
+    await tab.keyboard.press("ArrowRight");
+    const said = await tab.locator("#tolerance .tip").innerText(),
+      at = number(said.match(/of about (\S+)/)[1]),
+      part = number(said.match(/samples\s+(\S+)/)[1]);
+    sum += part;
+    if (at < least.at_least) beyond += part;
+    if (k) width = at - last;
+    last = at;
+  }
+  assert.ok(Math.abs(sum - 100) < 1e-3, `bars of ${sum} % in all`);
+  const samples = samplesOf(made, `/tolerance/load_case/cold/tension_min_${least.set}`),
+    below = (v) => (100 * samples.filter((sample) => sample < v).length) / samples.length;
+  assert.ok(beyond >= below(least.at_least - width) - 1 && beyond <= below(least.at_least + width) + 1, `${beyond} %`);
+  await tab.keyboard.press("Escape");
 }
 
 // Returns the sorted values of a data set, or null if the file has none.

@@ -59,6 +59,53 @@ function toleranceChart(t) {
   });
 }
 
+// Returns the row of `requirements` that costs yield: of those with a share and samples the one with the lowest yield.
+function costliestRow() {
+  const rows = judged().filter((row) => hasNumber(row.yield) && row.curves.some(({ value }) => value.length));
+  return rows.reduce((a, b) => (a && a.yield <= b.yield ? a : b), null);
+}
+
+// Returns the part of the samples of a curve, in per cent, that is outside of the bounds of its row.
+function outsideOf(row, c) {
+  const isBoth = row.figure !== "tension", // else a curve belongs to one bound
+    below = c.value.findLast((v) => v < row.at_least);
+  const low = hasNumber(row.at_least) && (isBoth || c.bound === "at_least") && below !== undefined,
+    high = hasNumber(row.at_most) && (isBoth || c.bound === "at_most");
+  return (low ? shareBelow(c, below) : 0) + (high ? 100 * c.share.at(-1) - shareBelow(c, row.at_most) : 0);
+}
+
+// Draws the histogram of the figure of a row in the load case in which it costs most.
+const BINS = 40;
+function requirementChart(row) {
+  const curves = row.curves.filter(({ value }) => value.length),
+    c = curves.reduce((a, b) => (outsideOf(row, a) >= outsideOf(row, b) ? a : b)),
+    { unit, times } = scaleOf(row.unit),
+    ends = [c.value[0], c.value.at(-1)],
+    isCount = c.value.every(Number.isInteger) && ends[1] - ends[0] < BINS,
+    n = isCount ? ends[1] - ends[0] + 1 : BINS,
+    width = isCount ? 1 : (ends[1] - ends[0]) / n || Math.abs(ends[0]) / n || 1,
+    first = isCount ? ends[0] - 0.5 : ends[0];
+  const upTo = (i) => (i === 0 ? 0 : i === n ? 100 * c.share.at(-1) : shareBelow(c, first + i * width)),
+    bins = Array.from({ length: n }, (_, i) => i),
+    x = bins.map((i) => times * (first + (i + 0.5) * width)),
+    marks = boundMarks(row, times, ends.map((v) => times * v)),
+    far = marks.filter(({ isFar }) => isFar).map(({ name }) => name),
+    name = `${plainWord(row.figure)}${c.bound === "at_least" && row.figure === "tension" ? ", minimum" : ""}`;
+  return chart({
+    title: `Samples in load case ${c.load_case}`,
+    xLabel: `${name}${unit ? ` (${unit})` : ""}`,
+    yLabel: "samples (%)",
+    unit: "%",
+    x,
+    counted: isCount,
+    log: false,
+    caption: `Each bar shows the share of samples in one interval.${far.length ? ` Outside of the picture: ${far.join("; ")}.` : ""}`,
+    head: (i) => `${name} of about ${fmt(x[i], 5)}${unit ? ` ${unit}` : ""}`,
+    series: [{ name: "samples", values: bins.map((i) => upTo(i + 1) - upTo(i)), colour: "--one", bars: (times * width) / 2 }],
+    marks: marks.filter(({ isFar }) => !isFar),
+  });
+}
+
 function scaleText(t) {
   if (typeof t.sigma_scale !== "number") return "";
   if (!(t.sigma_scale > 0))
@@ -111,13 +158,15 @@ function shareTable(t) {
 function writeTolerance() {
   const t = summary.tolerance;
   if (!t) return;
+  const row = costliestRow(),
+    costs = row && `Of all requirements of the samples, this one has the lowest yield: ${percent(row.yield)}.`;
   const kinds = Object.entries(t.kind_share).map(([kind, part]) => `${ERROR_KIND[kind] || kind} ${percent(part)}`);
   section(
     "tolerance",
-    "Tolerances of the as-built net",
-    el("p", {}, toleranceText(t)),
-    el("div", { class: "charts" }, toleranceChart(t)),
-    kinds.length ? el("h3", { class: "after" }, "Cables with the largest part of the error") : null,
+    row ? `Tolerances: ${row.name}` : "Tolerances of the as-built net",
+    el("p", {}, toleranceText(t), row ? ` ${costs}` : ""),
+    el("div", { class: "charts" }, row ? requirementChart(row) : toleranceChart(t)),
+    kinds.length ? el("h3", { class: "after" }, "Cables with the largest part of the error of ψ") : null,
     kinds.length
       ? el("p", {}, `To first order, the errors contribute the following shares to ψ²: ${kinds.join(", ")}.`)
       : null,
