@@ -13,7 +13,7 @@
 //   bytes_max: how large it may be, if more than usual; fluid: it is only looked at how fast it is
 //   overlay: a load case is drawn over the net
 //   look: its looks are checked, and its sizes are in sizes.json
-//   judged: how the margin over the axes is drawn, as a map or as a line
+//   judged: how the margin over the axes is drawn, as a map, as maps for each value of the third axis, or as a line
 //   study: how many points; leads: the axis that matters most, of two; along the other one nothing changes
 
 const FORM = ["net", "cables", "map", "tensions", "summary", "form-finding", "provenance"];
@@ -332,6 +332,16 @@ export const pages = [
     text:
       "base: base.yaml\nsweep:\n  form.pretension_N: [4, 8, 10, 12, 14, 18]\n  tolerance.sigma_cut_m: [2e-5, 5e-5]\n" +
       "  files: all\n",
+    files: { "base.yaml": REQUIRED },
+    sections: ["sweep", "points"],
+  },
+  {
+    name: "sweep-three", // three axes: a map of two for each value of the third
+    study: 18,
+    judged: "maps",
+    text:
+      "base: base.yaml\nsweep:\n  form.pretension_N: [4, 10, 14]\n  tolerance.sigma_cut_m: [2e-5, 5e-5]\n" +
+      "  scene.EA_inner_N: [6e4, 1e5, 1.4e5]\n  files: all\n",
     files: { "base.yaml": REQUIRED },
     sections: ["sweep", "points"],
   },

@@ -112,14 +112,14 @@ export async function checkVerdicts(tab, page, made) {
     assert.equal(await row.locator('[data-label="Verdict"]').textContent(), words);
     const margin = number(await row.locator('[data-label^="Smallest margin"]').textContent());
     assert.ok(Math.abs(margin - 100 * least) < 0.051);
-    seen.set(await link.textContent(), [summary.verdict, 100 * least]);
+    seen.set(await link.getAttribute("title"), [summary.verdict, 100 * least]);
   }
   const at = (i) => seen.get(study.id[i]),
     passing = study.id.filter((_, i) => at(i)[0] === "pass").length,
     advice = await tab.locator("p.advice").innerText(),
     figures = await tab.locator("dl.figures").first().innerText();
   assert.ok(figures.includes(`${passing} of ${page.study}`) && /points pass/.test(figures), figures);
-  assert.equal(await tab.locator("#points tr.chosen a").textContent(), study.id[study.best]);
+  assert.equal(await tab.locator("#points tr.chosen a").getAttribute("title"), study.id[study.best]);
   if (passing) {
     const margins = [...seen.values()].filter(([verdict]) => verdict === "pass").map(([, margin]) => margin);
     assert.equal(at(study.best)[0], "pass");
@@ -131,6 +131,7 @@ export async function checkVerdicts(tab, page, made) {
     assert.ok(!/best/.test(figures), figures);
   }
   if (page.judged === "map") await checkMarginMap(tab, study, at);
+  else if (page.judged === "maps") await checkMarginMaps(tab, study, at);
   else await checkMarginLine(tab, study, at);
 }
 
@@ -152,6 +153,37 @@ async function checkMarginMap(tab, study, at) {
       assert.equal(word, signs[verdict][1]);
       assert.equal((await cell.textContent())[0], signs[verdict][0]);
     }
+}
+
+// Three axes: a map of two for each value of the third, all with the same colours, and each point in the right cell. The
+// points are named by their values.
+async function checkMarginMaps(tab, study, at) {
+  const heat = tab.locator("#sweep .heat").first(),
+    sorted = ({ values }) => [...new Set(values)].sort((a, b) => a - b),
+    [across, down, third] = study.input;
+  await tab.locator(`#sweep input[name=axis][value="${across.name}"]`).check();
+  const panels = heat.locator(".scroll");
+  assert.equal(await tab.locator("#sweep figure:not(.heat)").count(), 0, "a chart beside the maps");
+  assert.deepEqual(await panels.locator("h4").allTextContents(), ["sigma cut 0.02 mm", "sigma cut 0.05 mm"]);
+  assert.equal(await heat.locator(".bar").count(), 1);
+  const paint = new Map();
+  for (const [p, z] of sorted(third).entries())
+    for (const [r, y] of sorted(down).reverse().entries())
+      for (const [c, x] of sorted(across).entries()) {
+        const cell = panels.nth(p).locator("tbody tr").nth(r).locator("td").nth(c),
+          i = study.id.findIndex((_, k) => across.values[k] === x && down.values[k] === y && third.values[k] === z),
+          [, value] = (await cell.getAttribute("title")).match(/, sigma cut \S+ mm: (\S+) %, \w+$/),
+          margin = at(i)[1];
+        same(number(value), margin, 5);
+        assert.equal(await cell.evaluate((td) => td.classList.contains("best")), i === study.best);
+        paint.set(margin, await cell.evaluate((td) => td.style.background));
+      }
+  const colours = [...paint].sort(([a], [b]) => a - b).map(([, colour]) => colour),
+    runs = colours.filter((colour, k) => colour !== colours[k - 1]).length;
+  assert.equal(runs, new Set(colours).size, "the colours of the maps differ");
+  const link = tab.locator("#points tr.chosen a");
+  assert.match(await link.getAttribute("aria-label"), /^(report|result file): pretension \d+ N, EA inner \d+ N, sigma cut \S+ mm$/);
+  assert.match(await link.textContent(), /^(report|result file)$/);
 }
 
 async function checkMarginLine(tab, study, at) {

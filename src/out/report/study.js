@@ -284,40 +284,44 @@ function markChart(study, figure, axis, others, stage) {
 }
 
 // Draws a map of two axes, with a coloured cell for each pair of values. The cell shows its value if there is room.
-const CELL_TEXT_MAX = 44; // characters of a row that fit
-function heatMap(study, figure, axis, other, stage) {
+// third: with an axis there is one map for each of its values; all have the same colours
+const CELL_TEXT_MAX = 44, // characters of a row that fit
+  MAPS_MAX = 12; // more values of a third axis are drawn as marks
+function heatMap(study, figure, axis, other, stage, third) {
   const columns = valuesOf(study, axis),
     rows = valuesOf(study, other).reverse(),
+    panels = third ? valuesOf(study, third) : [""],
+    place = (x, y, z) => `${x} ${y} ${z}`,
     at = new Map();
-  for (const i of pointsDone(study)) at.set(`${axis.value(i)} ${other.value(i)}`, i);
+  for (const i of pointsDone(study))
+    at.set(place(axis.value(i), other.value(i), third ? third.value(i) : ""), i);
   const from = stageOf(figure, stage),
     isMargin = figure.key === MARGIN;
-  const of = (x, y) => (at.has(`${x} ${y}`) ? figure.of(at.get(`${x} ${y}`), from) : null);
-  const all = range(columns.flatMap((x) => rows.map((y) => of(x, y))));
+  const all = range([...at.values()].map((i) => figure.of(i, from)));
   if (!all) return null;
   // Margin 0 is the middle of the colours. They end at the largest margin that passes, so that it differs from 0.
   const most = all[1] > 0 ? all[1] : Math.abs(all[0]) || 1,
     [scale, low, high] = isMargin ? [(t) => diverging(1 - t), -most, most] : [sequential, ...widened(all)];
-  const label = (a, value) => (a.isNumber ? fmt(value, 4) : String(value));
+  const label = (a, value) => (a.isNumber ? fmt(value, 4) : String(value)),
+    isWide = isMargin && columns.length > 4;
   const bar = el("div", { class: "bar" });
   const decimals = isMargin ? 1 : Math.min(9, Math.max(0, 2 - Math.floor(Math.log10(all[1] - all[0] || 1))));
   const text = (v) => (Math.abs(all[1]) < 1e5 ? minus(v.toFixed(decimals)) : fmt(v, 3));
-  const cell = (x, y) => {
-    const v = of(x, y);
+  const cell = (i) => {
+    const v = i === undefined ? null : figure.of(i, from);
     if (v === null) return el("td", { class: "gap", title: "no value" }, "–");
-    const i = at.get(`${x} ${y}`),
-      [verdict, sign] = (isMargin && VERDICTS[study.verdict[i]]) || ["", ""],
+    const [verdict, sign] = (isMargin && VERDICTS[study.verdict[i]]) || ["", ""],
       t = high > low ? Math.min(1, Math.max(0, (v - low) / (high - low))) : 0,
-      where = `${headOf(axis, label(axis, x))}, ${headOf(other, label(other, y))}`,
+      where = [axis, other, ...(third ? [third] : [])].map((a) => headOf(a, label(a, a.value(i)))).join(", "),
       node = el("td", {
         class: figure.isLead && i === study.best ? "best" : undefined,
         title: `${where}: ${minus(fmt(v, 5))} ${figure.unit}${verdict ? `, ${verdict}` : ""}`,
       });
     const paintCell = () => {
       const colour = scale(t),
-        light = 0.299 * colour[0] + 0.587 * colour[1] + 0.114 * colour[2];
+        light = [0.2126, 0.7152, 0.0722].reduce((sum, part, k) => sum + part * (colour[k] / 255) ** 2.2, 0);
       node.style.background = rgb(colour);
-      node.style.color = light > 140 ? "#000" : "#fff";
+      node.style.color = light > 0.18 ? "#000" : "#fff"; // where both have the same contrast
     };
     paintCell();
     for (const scheme of [darkScheme, printing]) scheme.addEventListener("change", paintCell);
@@ -328,14 +332,12 @@ function heatMap(study, figure, axis, other, stage) {
     node.append(kind ? el("span", { class: kind }, text(v)) : text(v));
     return node;
   };
-  drawBar(bar, scale, [low, high], figure.yLabel, all);
-  return el(
-    "figure",
-    { class: isMargin && columns.length > 4 ? "heat wide" : "heat" },
-    el("h3", {}, figure.title),
-    el(
+  const map = (z) => {
+    const name = third ? headOf(third, label(third, z)) : "";
+    return el(
       "div",
-      { class: "scroll", tabindex: 0, role: "region", "aria-label": `${figure.title}, a map of two axes` },
+      { class: "scroll", tabindex: 0, role: "region", "aria-label": `${figure.title}, a map of two axes ${name}`.trim() },
+      name ? el("h4", {}, name) : null,
       el(
         "table",
         {},
@@ -343,7 +345,9 @@ function heatMap(study, figure, axis, other, stage) {
         el(
           "tbody",
           {},
-          rows.map((y) => el("tr", {}, el("th", { scope: "row" }, label(other, y)), columns.map((x) => cell(x, y)))),
+          rows.map((y) =>
+            el("tr", {}, el("th", { scope: "row" }, label(other, y)), columns.map((x) => cell(at.get(place(x, y, z))))),
+          ),
         ),
         el(
           "tfoot",
@@ -351,7 +355,14 @@ function heatMap(study, figure, axis, other, stage) {
           el("tr", {}, el("th", { scope: "row" }, ""), columns.map((x) => el("th", { scope: "col" }, label(axis, x)))),
         ),
       ),
-    ),
+    );
+  };
+  drawBar(bar, scale, [low, high], figure.yLabel, all);
+  return el(
+    "figure",
+    { class: third || isWide ? "heat wide" : "heat" },
+    el("h3", {}, figure.title),
+    el("div", { class: third ? "charts" : undefined }, panels.map(map)),
     bar,
   );
 }
@@ -368,8 +379,10 @@ function changesAlong(figure, groups, stage) {
 
 function drawFigures(study, figures, axis, others, stage, charts, note) {
   const groups = curves(study, axis, others),
-    hasMap = groups.length > 1 && others.length === 1,
-    isMap = (f) => hasMap && (groups.length > CURVES_MAX || f.key === MARGIN);
+    count = (a) => valuesOf(study, a).length,
+    [other, third] = [...others].sort((a, b) => count(b) - count(a)), // maps for the few values of the third axis
+    hasMap = groups.length > 1 && others.length <= 2 && (!third || count(third) <= MAPS_MAX),
+    isMap = (f) => hasMap && (third || groups.length > CURVES_MAX || f.key === MARGIN);
   const has = (f) => f.drawn.includes(stageOf(f, stage)),
     all = figures.filter((f) => !f.isLoss && (groups.length === 1 ? f.drawn.length : has(f))),
     drawn = all.filter((f) => groups.length === 1 || isMap(f) || changesAlong(f, groups, stage)),
@@ -379,7 +392,7 @@ function drawFigures(study, figures, axis, others, stage, charts, note) {
     : "";
   const drawings = drawn.map((f) =>
     isMap(f)
-      ? heatMap(study, f, axis, others[0], stage)
+      ? heatMap(study, f, axis, other, stage, third)
       : groups.length > CURVES_MAX || (f.key === MARGIN && groups.length > 1)
         ? markChart(study, f, axis, others, stage)
         : curveChart(study, f, axis, others, groups, stage),
@@ -480,9 +493,12 @@ const FAILURES_SHOWN = 5,
 // Returns a link to a file only. Any other scheme in the data becomes part of a path.
 const href = (path) => (path.startsWith("/") ? "" : "./") + path.split("/").map(encodeURIComponent).join("/");
 
-function pointLink(study, i) {
-  const target = study.page[i] || study.file[i];
-  return target ? el("a", { href: href(target) }, study.id[i]) : study.id[i];
+// Returns a link to the result of a point, which is named by its values; without a result, the id of the point.
+function pointLink(study, axes, i) {
+  const target = study.page[i] || study.file[i],
+    word = study.page[i] ? "report" : "result file";
+  if (!target) return study.id[i];
+  return el("a", { href: href(target), title: study.id[i], "aria-label": `${word}: ${pointName(axes, i)}` }, word);
 }
 
 const aligned = (v, digits) => (v === 0 ? "0" : Math.abs(v) < RESOLVED_MM ? rounded(v) : digitsOf(v, digits));
@@ -527,7 +543,7 @@ function writePoints(study, axes, figures, best) {
         .filter((s) => f.key === "psi_m" || s === f.main || (isLoadCase(s) && !f.isError))
         .map((s) => figureColumn(study, f, s)),
     ),
-    { name: "Point", of: (i) => study.id[i], show: (i) => pointLink(study, i) },
+    { name: "Result", of: (i) => study.id[i], show: (i) => pointLink(study, axes, i) },
   ];
   const notes = [];
   if (fixed.length) notes.push(`All points have ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
