@@ -41,6 +41,7 @@ static int column_of(hf_required *q, const hf_requirement_settings *r, bool is_m
 {
     hf_required_column c = {.figure = r->figure,
                             .antenna = antenna_of(q, r),
+                            .frequency_Hz = r->frequency_Hz,
                             .is_minimum = is_minimum && r->figure == HF_REQUIRED_TENSION,
                             .feed = r->feed,
                             .set = r->set,
@@ -97,14 +98,13 @@ const char *hf_required_state_name(const hf_required *q, int state)
     return state ? q->load_cases->load_case[state - 1].name : "nominal";
 }
 
-const char *hf_required_column_name(const hf_required *q, const hf_required_column *c, char name[HF_REQUIRED_NAME_SIZE])
+const char *hf_required_column_name(const hf_required_column *c, char name[HF_REQUIRED_NAME_SIZE])
 {
     bool has_feed = hf_required_is_of(c->figure, HF_REQUIRED_OF_FEED);
     const char *extreme = c->figure != HF_REQUIRED_TENSION ? "" : c->is_minimum ? "_min" : "_max";
     int n = snprintf(name, HF_REQUIRED_NAME_SIZE, "%s%s%s%s%s%s", hf_required_figure_word[c->figure], extreme,
                      has_feed ? "_" : "", has_feed ? hf_focus_word[c->feed] : "", *c->set ? "_" : "", c->set);
-    if (c->antenna >= 0)
-        snprintf(name + n, HF_REQUIRED_NAME_SIZE - (size_t)n, "_%.9gGHz", q->frequency_Hz[c->antenna] / 1e9);
+    if (c->frequency_Hz > 0) snprintf(name + n, HF_REQUIRED_NAME_SIZE - (size_t)n, "_%.9gGHz", c->frequency_Hz / 1e9);
     return name;
 }
 

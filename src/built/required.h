@@ -20,8 +20,9 @@ typedef struct {
     hf_required_figure figure;
     bool is_minimum; /* of `tension`: the minimum tension of the set, else the maximum */
     hf_focus feed;
-    int antenna;     /* of a figure at a frequency: the antenna that it needs; else -1 */
-    const char *set; /* its name; "": all cables, or a figure without a set */
+    int antenna;         /* of a figure at a frequency: the antenna that it needs; else -1 */
+    double frequency_Hz; /* of that antenna, or NaN */
+    const char *set;     /* its name; "": all cables, or a figure without a set */
     int n_cable;
     const int *cable;       /* [n_cable] cables of the set, ascending */
     unsigned nominal, many; /* bits of the load cases in which the design, or the samples, need it */
@@ -57,8 +58,7 @@ void hf_required_free(hf_required *required);
 #define HF_REQUIRED_NAME_SIZE (HF_SET_NAME_SIZE + 32)
 
 /* Writes the name of a column, such as "tension_min_ties" or "gain_refocused_8GHz". Returns `name`. */
-const char *hf_required_column_name(const hf_required *required, const hf_required_column *column,
-                                    char name[HF_REQUIRED_NAME_SIZE]);
+const char *hf_required_column_name(const hf_required_column *column, char name[HF_REQUIRED_NAME_SIZE]);
 
 /* Returns the name of load case `state`, "nominal" for 0. */
 const char *hf_required_state_name(const hf_required *required, int state);

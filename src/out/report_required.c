@@ -39,21 +39,57 @@ static hf_status keep_values(const hf_series *samples, hf_report_curve *to)
     return HF_OK;
 }
 
-static hf_status read_curve(const char *path, hf_report_curve c, const hf_requirement_settings *row,
+/* Ranks the cables by the number of samples in which their tension breaks the bound. `at` [n samples] are the cables
+ * with the tension. */
+static hf_status rank_cables(const hf_series *samples, const hf_series *at, double bound, int n_cable,
+                             hf_report_curve *to)
+{
+    int *count = calloc((size_t)n_cable + 1, sizeof *count);
+    if (!count) return HF_NO_MEMORY;
+    for (int i = 0; i < samples->n; i++) {
+        double v = samples->value[i], e = at->value[i];
+        if (!(to->is_low ? v < bound : v > bound) || !(e >= 0 && e < n_cable)) continue;
+        count[(int)e]++;
+        to->n_failing++;
+    }
+    for (to->n_cable = 0; to->n_cable < HF_TOLERANCE_RANKED; to->n_cable++) {
+        int most = 0;
+        for (int e = 1; e < n_cable; e++)
+            if (count[e] > count[most]) most = e;
+        if (count[most] == 0) break;
+        to->cable[to->n_cable] = most;
+        to->count[to->n_cable] = count[most];
+        count[most] = 0;
+    }
+    free(count);
+    return HF_OK;
+}
+
+static hf_status read_curve(const char *path, hf_report_curve c, const hf_requirement_settings *row, int n_cable,
                             hf_report_curves *curves, hf_messages *messages)
 {
-    const hf_required_column column = {
-        .figure = row->figure, .is_minimum = c.is_low, .feed = row->feed, .set = row->set};
-    char name[HF_REQUIRED_NAME_SIZE], place[HF_REQUIRED_NAME_SIZE + HF_SET_NAME_SIZE + 32];
-    hf_series samples = {0};
+    const hf_required_column column = {.figure = row->figure,
+                                       .is_minimum = c.is_low,
+                                       .feed = row->feed,
+                                       .frequency_Hz = row->frequency_Hz,
+                                       .set = row->set};
+    char name[HF_REQUIRED_NAME_SIZE], place[HF_REQUIRED_NAME_SIZE + HF_SET_NAME_SIZE + 40];
+    hf_series samples = {0}, at = {0};
     snprintf(place, sizeof place, "/tolerance/load_case/%s/%s", c.load_case, hf_required_column_name(&column, name));
     hf_status status = hf_store_read_series(path, place, 1, &samples, messages);
+    if (status == HF_OK && row->figure == HF_REQUIRED_TENSION) {
+        strcat(place, "_cable"); /* earlier versions did not store it */
+        status = hf_store_read_series(path, place, 1, &at, messages);
+    }
     if (status == HF_OK && samples.n > 0) {
-        status = keep_values(&samples, &c);
+        if (at.n == samples.n)
+            status = rank_cables(&samples, &at, c.is_low ? row->at_least : row->at_most, n_cable, &c);
+        if (status == HF_OK) status = keep_values(&samples, &c);
         if (status == HF_OK) curves->curve[curves->n++] = c;
         if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
     }
     hf_series_free(&samples);
+    hf_series_free(&at);
     return status;
 }
 
@@ -72,9 +108,9 @@ hf_status hf_report_curves_read(const char *path, const hf_summary *s, hf_report
             bool has_low = !isnan(row->at_least), has_high = !isnan(row->at_most);
             bool is_same = has_low && has_high && row->figure != HF_REQUIRED_TENSION; /* of both bounds */
             c.is_low = true;
-            if (has_low) HF_TRY(read_curve(path, c, row, curves, messages));
+            if (has_low) HF_TRY(read_curve(path, c, row, s->n_cable, curves, messages));
             c.is_low = false;
-            if (has_high && !is_same) HF_TRY(read_curve(path, c, row, curves, messages));
+            if (has_high && !is_same) HF_TRY(read_curve(path, c, row, s->n_cable, curves, messages));
         }
     }
     return HF_OK;
@@ -95,6 +131,16 @@ static void write_curve(const hf_report_curve *c, FILE *f)
     fprintf(f, ",\"bound\":\"%s\",\"n\":%d", c->is_low ? "at_least" : "at_most", c->n);
     hf_json_pack_values("value", "f32", c->value, c->n_value, f);
     hf_json_pack_values("share", "f32", c->share, c->n_value, f);
+    if (c->n_cable) {
+        hf_json j = {.file = f, .is_due = true};
+        hf_json_integer(&j, "failing", c->n_failing);
+        hf_json_open(&j, "cables", '[');
+        for (int k = 0; k < c->n_cable; k++) {
+            hf_json_integer(&j, NULL, c->cable[k]);
+            hf_json_integer(&j, NULL, c->count[k]);
+        }
+        hf_json_close(&j, ']');
+    }
     fputc('}', f);
 }
 

@@ -16,6 +16,10 @@ typedef struct {
     int n_value;           /* number of the values below */
     double *value;         /* [n_value] order statistics, ascending, owned; samples without a value are left out */
     double *share;         /* [n_value] share of all samples that is at most as large */
+    int n_failing;         /* of a tension: number of samples that break the bound */
+    int n_cable;           /* number of the cables below; 0: not known */
+    int cable[HF_TOLERANCE_RANKED]; /* cables with the tension that breaks the bound, the most frequent first */
+    int count[HF_TOLERANCE_RANKED]; /* number of the samples in which they have it */
 } hf_report_curve;
 
 typedef struct {

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define BLOCK 4096 /* samples that are read and written at a time */
 
@@ -50,7 +51,7 @@ static hf_status write_columns(hf_hdf5 *io, const char *path, int n_column, samp
             for (int i = 0; i < n; i++)
                 value[i] = row[i * rows->n_value + column[k].column];
             column[k].array.dims[0] = (hsize_t)n;
-            column[k].array.kind = HF_KIND_REAL; /* HDF5 converts the status */
+            column[k].array.kind = HF_KIND_REAL; /* HDF5 converts integers */
             hf_hdf5_write_rows(io, group, &column[k].array, (hsize_t)first, value);
             status = io->status;
         }
@@ -67,27 +68,53 @@ static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_sta
     return write_columns(io, "/tolerance/sample", n_column, column, rows);
 }
 
+/* The columns of a load case. */
+typedef struct {
+    int n;
+    sample_column column[2 * HF_REQUIRED_COLUMNS];
+    char name[2 * HF_REQUIRED_COLUMNS][HF_REQUIRED_NAME_SIZE + 8];
+} required_columns;
+
+/* Lists the values of the figures that samples need in a load case and, of tensions, the cables that have them. */
+static void list_required(const hf_required *q, int state, required_columns *to)
+{
+    char name[HF_REQUIRED_NAME_SIZE];
+    to->n = 0;
+    for (int k = 0; k < 2 * q->n_column; k++) {
+        const hf_required_column *of = &q->column[k / 2];
+        bool is_item = k % 2;
+        if (!(of->many >> state & 1u) || (is_item && of->figure != HF_REQUIRED_TENSION)) continue;
+        snprintf(to->name[to->n], sizeof to->name[0], "%s%s", hf_required_column_name(of, name),
+                 is_item ? "_cable" : "");
+        hf_hdf5_array array = {to->name[to->n],
+                               HF_KIND_REAL,
+                               1,
+                               {0},
+                               hf_required_figure_unit[of->figure],
+                               "figure of each sample in this load case"};
+        if (is_item)
+            array = (hf_hdf5_array){array.name, HF_KIND_INT, 1, {0}, "", "cable with this tension; -1: no shape"};
+        to->column[to->n++] = (sample_column){array, (int)hf_montecarlo_value_at(q, state, is_item) + k / 2};
+    }
+}
+
 /* Writes the figures that requirements bound, for each load case in which samples need them. */
 static hf_status write_required(hf_hdf5 *io, const hf_montecarlo *t, const hf_statistics_rows *rows)
 {
     const hf_required *q = t->required;
-    char name[HF_REQUIRED_COLUMNS][HF_REQUIRED_NAME_SIZE], path[HF_LAYOUT_LOAD_CASE_SIZE];
-    sample_column column[HF_REQUIRED_COLUMNS];
-    if (q) hf_hdf5_close(io, hf_hdf5_make_group(io, "/tolerance/load_case"));
-    for (int state = 0; q && state < q->n_state; state++) {
-        int n = 0;
-        for (int k = 0; k < q->n_column; k++) {
-            if (!(q->column[k].many >> state & 1u)) continue;
-            const char *units = hf_required_figure_unit[q->column[k].figure];
-            column[n].array =
-                (hf_hdf5_array){hf_required_column_name(q, &q->column[k], name[n]), HF_KIND_REAL, 1, {0}, units,
-                                "figure of each sample in this load case"};
-            column[n++].column = (int)hf_montecarlo_value_at(q, state, false) + k;
-        }
+    char path[HF_LAYOUT_LOAD_CASE_SIZE];
+    if (!q) return HF_OK;
+    required_columns *c = malloc(sizeof *c);
+    if (!c) return HF_NO_MEMORY;
+    hf_status status = HF_OK;
+    hf_hdf5_close(io, hf_hdf5_make_group(io, "/tolerance/load_case"));
+    for (int state = 0; state < q->n_state && status == HF_OK; state++) {
+        list_required(q, state, c);
         snprintf(path, sizeof path, "/tolerance/load_case/%s", hf_required_state_name(q, state));
-        if (n > 0) HF_TRY(write_columns(io, path, n, column, rows));
+        if (c->n > 0) status = write_columns(io, path, c->n, c->column, rows);
     }
-    return HF_OK;
+    free(c);
+    return status;
 }
 
 static hf_status write_first_order(hf_hdf5 *io, const hf_montecarlo *t)

@@ -286,14 +286,28 @@ async function checkCostly(tab, made) {
     below = (v) => (100 * samples.filter((sample) => sample < v).length) / samples.length;
   assert.ok(beyond >= below(least.at_least - width) - 1 && beyond <= below(least.at_least + width) + 1, `${beyond} %`);
   await tab.keyboard.press("Escape");
+  const tension_N = samplesOf(made, `/tolerance/load_case/cold/tension_min_${least.set}`, false),
+    cable = samplesOf(made, `/tolerance/load_case/cold/tension_min_${least.set}_cable`, false),
+    counts = new Map(),
+    failing = cable.filter((_, i) => tension_N[i] < least.at_least);
+  for (const e of failing) counts.set(made.cables[e].id, (counts.get(made.cables[e].id) || 0) + 1);
+  const [top, ...more] = await tab
+    .locator("#tolerance tbody tr")
+    .evaluateAll((all) => all.map((row) => [row.children[0].textContent, row.children[2].textContent]));
+  assert.equal(counts.get(top[0]), Math.max(...counts.values()), "not the cable that fails most");
+  for (const [id, share] of [top, ...more]) same(number(share), (100 * counts.get(id)) / failing.length, 3);
+  assert.equal(least.worst_load_case, "cold");
+  assert.equal(made.cables[cable[least.worst_sample]].id, least.worst_item);
 }
 
-// Returns the sorted values of a data set, or null if the file has none.
-function samplesOf(made, name) {
-  const read = "import h5py,json,sys;f=h5py.File(sys.argv[1]);n=sys.argv[2];print(json.dumps(sorted(f[n][:].ravel()) if n in f else None))";
-  return JSON.parse(
+// Returns the values of a data set, sorted or in the order of the samples, or null if the file has none.
+function samplesOf(made, name, isSorted = true) {
+  const read =
+    "import h5py,json,sys;f=h5py.File(sys.argv[1]);n=sys.argv[2];v=f[n][:].tolist() if n in f else None;print(json.dumps(v))";
+  const values = JSON.parse(
     execFileSync("/usr/bin/python3", ["-c", read, join(made.folder, "result.h5"), name], { encoding: "utf8" }),
   );
+  return values && isSorted ? values.sort((a, b) => a - b) : values;
 }
 
 // Bars as high as the samples are many, a line for each figure at its place, and the cables of the file.

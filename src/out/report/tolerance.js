@@ -74,12 +74,16 @@ function outsideOf(row, c) {
   return (low ? shareBelow(c, below) : 0) + (high ? 100 * c.share.at(-1) - shareBelow(c, row.at_most) : 0);
 }
 
-// Draws the histogram of the figure of a row in the load case in which it costs most.
+// Returns the curve of the load case in which a row costs most.
+const costliestCurve = (row) =>
+  row.curves
+    .filter(({ value }) => value.length)
+    .reduce((a, b) => (outsideOf(row, a) >= outsideOf(row, b) ? a : b));
+
+// Draws the histogram of the figure of a row.
 const BINS = 40;
-function requirementChart(row) {
-  const curves = row.curves.filter(({ value }) => value.length),
-    c = curves.reduce((a, b) => (outsideOf(row, a) >= outsideOf(row, b) ? a : b)),
-    { unit, times } = scaleOf(row.unit),
+function requirementChart(row, c) {
+  const { unit, times } = scaleOf(row.unit),
     ends = [c.value[0], c.value.at(-1)],
     isCount = c.value.every(Number.isInteger) && ends[1] - ends[0] < BINS,
     n = isCount ? ends[1] - ends[0] + 1 : BINS,
@@ -137,12 +141,12 @@ function toleranceText(t) {
   return `${fmtCount(t.samples)} samples of the as-built net${design} were solved${failed}.${yielded}${scaleText(t)}`;
 }
 
-function shareTable(t) {
-  if (!t.cable_share.length) return null;
+function shareTable(shares, caption) {
+  if (!shares.length) return null;
   const group = new Map(net.cable_id.map((id, e) => [id, groupOf(e)]));
   return table(
     [["Cable"], ["Group"], ["Share", "number"]],
-    t.cable_share.map(({ cable, share }) =>
+    shares.map(({ cable, share }) =>
       el(
         "tr",
         {},
@@ -151,25 +155,49 @@ function shareTable(t) {
         el("td", { class: "number" }, percent(share)),
       ),
     ),
-    "Cables by their share of the error",
+    caption,
   );
+}
+
+// Returns which cables break a required tension, or else have the largest part of psi.
+function costliestCables(t, c) {
+  if (c && c.cables) {
+    const shares = [];
+    for (let k = 0; k < c.cables.length; k += 2)
+      shares.push({ cable: net.cable_id[c.cables[k]], share: c.cables[k + 1] / c.failing });
+    const extreme = c.bound === "at_least" ? "minimum" : "maximum";
+    return [
+      el("h3", { class: "after" }, "Cables that break the requirement"),
+      el(
+        "p",
+        {},
+        `In ${fmtCount(c.failing)} samples, the ${extreme} tension in the load case ${c.load_case} is out of bounds. ` +
+          "The table lists the cables with this tension, and their share of these samples.",
+      ),
+      shareTable(shares, "Cables by their share of the failing samples"),
+    ];
+  }
+  const kinds = Object.entries(t.kind_share).map(([kind, part]) => `${ERROR_KIND[kind] || kind} ${percent(part)}`);
+  return [
+    kinds.length ? el("h3", { class: "after" }, "Cables with the largest part of the error of ψ") : null,
+    kinds.length
+      ? el("p", {}, `To first order, the errors contribute the following shares to ψ²: ${kinds.join(", ")}.`)
+      : null,
+    shareTable(t.cable_share, "Cables by their share of the error"),
+  ];
 }
 
 function writeTolerance() {
   const t = summary.tolerance;
   if (!t) return;
   const row = costliestRow(),
+    curve = row && costliestCurve(row),
     costs = row && `Of all requirements of the samples, this one has the lowest yield: ${percent(row.yield)}.`;
-  const kinds = Object.entries(t.kind_share).map(([kind, part]) => `${ERROR_KIND[kind] || kind} ${percent(part)}`);
   section(
     "tolerance",
     row ? `Tolerances: ${row.name}` : "Tolerances of the as-built net",
     el("p", {}, toleranceText(t), row ? ` ${costs}` : ""),
-    el("div", { class: "charts" }, row ? requirementChart(row) : toleranceChart(t)),
-    kinds.length ? el("h3", { class: "after" }, "Cables with the largest part of the error of ψ") : null,
-    kinds.length
-      ? el("p", {}, `To first order, the errors contribute the following shares to ψ²: ${kinds.join(", ")}.`)
-      : null,
-    shareTable(t),
+    el("div", { class: "charts" }, row ? requirementChart(row, curve) : toleranceChart(t)),
+    ...costliestCables(t, curve),
   );
 }

@@ -71,7 +71,7 @@ START_TEST(columns_are_measured_once)
                     {"gain_refocused_8GHz", 6, 0}, {"gain_refocused_8.5GHz", 2, 0}, {"gain_loss_refocused_8GHz", 0, 7}};
     ck_assert_int_eq(q.n_column, 9);
     for (int k = 0; k < q.n_column; k++) {
-        ck_assert_str_eq(hf_required_column_name(&q, &q.column[k], name), expected[k].name);
+        ck_assert_str_eq(hf_required_column_name(&q.column[k], name), expected[k].name);
         ck_assert_uint_eq(q.column[k].nominal, expected[k].nominal);
         ck_assert_uint_eq(q.column[k].many, expected[k].many);
     }
