@@ -60,6 +60,26 @@ static int column_of(hf_required *q, const hf_requirement_settings *r, bool is_m
     return k;
 }
 
+static bool needs_pull(int n, const hf_requirement_settings *row)
+{
+    bool needs = false;
+    for (int i = 0; i < n; i++)
+        needs |= row[i].figure == HF_REQUIRED_PULL;
+    return needs;
+}
+
+/* Lists the cables of each support, so that the pull of a sample does not look at all cables for each support. */
+static void list_supports(const hf_scene *s, hf_required *q)
+{
+    int n = 0;
+    for (int i = 0; i < s->n_node; i++) {
+        q->support_start[i] = n;
+        for (int e = 0; e < s->n_cable && s->role[i] == HF_ROLE_SUPPORT; e++)
+            if (s->end[2 * e] == i || s->end[2 * e + 1] == i) q->support_cable[n++] = e;
+    }
+    q->support_start[s->n_node] = n;
+}
+
 hf_status hf_required_create(int n, const hf_requirement_settings *row, const hf_scene *scene,
                              const hf_load_cases *load_cases, const double *mass_kg_per_m, hf_required *q)
 {
@@ -71,7 +91,11 @@ hf_status hf_required_create(int n, const hf_requirement_settings *row, const hf
                        .load_cases = load_cases,
                        .mass_kg_per_m = mass_kg_per_m};
     if (n == 0) return HF_OK;
-    HF_TRY(HF_ARENA_ARRAYS(&q->block, HF_ARRAY(cable, (size_t)n * (size_t)scene->n_cable)));
+    bool has_pull = needs_pull(n, row);
+    HF_TRY(HF_ARENA_ARRAYS(&q->block, HF_ARRAY(cable, (size_t)n * (size_t)scene->n_cable),
+                           HF_ARRAY(q->support_start, has_pull ? scene->n_node + 1 : 0),
+                           HF_ARRAY(q->support_cable, has_pull ? 2 * scene->n_cable : 0)));
+    if (has_pull) list_supports(scene, q);
     for (int i = 0; i < n; i++, cable += scene->n_cable) {
         const hf_requirement_settings *r = &row[i];
         int n_cable = hf_required_is_of(r->figure, HF_REQUIRED_OF_SET) ? hf_cable_pick(scene, r->set, cable) : 0;
@@ -193,15 +217,15 @@ static double deflection_m(const hf_required_shape *s, double *item)
 }
 
 /* Returns the maximum force of the net on a support, N. *item is its node. */
-static double pull_N(const hf_required_shape *s, double *item)
+static double pull_N(const hf_required *q, const hf_required_shape *s, double *item)
 {
     const hf_model *m = s->model;
     double most_N = -1;
     for (int row = m->n_free; row < m->n_node; row++) {
         double force[3] = {0}, unit[3];
-        for (int e = 0; e < m->n_cable; e++) {
-            int end = m->end_row[2 * e] == row ? 0 : 1;
-            if (m->end_row[2 * e + end] != row) continue;
+        const int *start = q->support_start + m->node_of_row[row];
+        for (int k = start[0]; k < start[1]; k++) {
+            int e = q->support_cable[k], end = m->end_row[2 * e] == row ? 0 : 1;
             hf_newton_matrix_direction(m, s->position_m, e, unit);
             for (int c = 0; c < 3; c++)
                 force[c] += (end ? -1 : 1) * s->tension_N[e] * unit[c];
@@ -253,7 +277,7 @@ double hf_required_figure_of(const hf_required *q, const hf_required_column *c, 
     case HF_REQUIRED_DEFLECTION:
         return deflection_m(s, item);
     case HF_REQUIRED_PULL:
-        return pull_N(s, item);
+        return pull_N(q, s, item);
     case HF_REQUIRED_MASS:
         return mass_kg(q, c, s);
     case HF_REQUIRED_N_FIGURE:
@@ -321,14 +345,16 @@ static double count_doubtful(const hf_required_column *c, const hf_required_shap
 
 /* Bounds the error of the force on support `row`. Besides its tension, the direction of a cable may be off. NaN if a
  * tension has no bound. */
-static double pull_error_N(const hf_required_shape *s, int row, double bound_m)
+static double pull_error_N(const hf_required *q, const hf_required_shape *s, int row, double bound_m)
 {
     const hf_model *m = s->model;
+    const int *start = q->support_start + m->node_of_row[row];
     double sum_N = 0, unit[3];
-    for (int e = 0; e < m->n_cable; e++)
-        if (m->end_row[2 * e] == row || m->end_row[2 * e + 1] == row)
-            sum_N += tension_error_N(m, s, e, bound_m) +
-                     2 * bound_m * fabs(s->tension_N[e]) / hf_newton_matrix_direction(m, s->position_m, e, unit);
+    for (int k = start[0]; k < start[1]; k++) {
+        int e = q->support_cable[k];
+        sum_N += tension_error_N(m, s, e, bound_m) +
+                 2 * bound_m * fabs(s->tension_N[e]) / hf_newton_matrix_direction(m, s->position_m, e, unit);
+    }
     return sum_N;
 }
 
@@ -377,7 +403,7 @@ static double error_of(const hf_required *q, const hf_required_column *c, const 
     case HF_REQUIRED_PULL:
         most_N = 0;
         for (int row = m->n_free; row < m->n_node && !isnan(most_N); row++) {
-            error_N = pull_error_N(s, row, bound_m);
+            error_N = pull_error_N(q, s, row, bound_m);
             if (!(error_N <= most_N)) most_N = error_N;
         }
         return most_N;

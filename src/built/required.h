@@ -41,6 +41,9 @@ typedef struct {
     const hf_scene *scene;
     const hf_load_cases *load_cases;
     const double *mass_kg_per_m; /* [n_cable]; NULL without a row about the mass */
+    /* [n_node + 1], and the cables of each support, ascending: cable[start[i]] to cable[start[i + 1] - 1]. Nodes that
+     * are no supports have none. NULL without a row about the pull. */
+    int *support_start, *support_cable;
     int n_antenna;               /* number of different frequencies of rows */
     double frequency_Hz[HF_REQUIREMENT_ROWS_MAX];
     hf_antenna *antenna;         /* [n_antenna] made by hf_required_radio_make */
