@@ -19,14 +19,11 @@ typedef struct {
     bool is_made; /* false before the first design that could be cut */
     hf_built built;
     hf_built_batch *batch;
-    /* [n_sample_state] by state, from 1: the design in the load case of the state, and its batch; NULL: no shape */
-    hf_built loaded[1 + HF_LOAD_CASES_MAX];
-    hf_built_batch *loaded_batch[1 + HF_LOAD_CASES_MAX];
-    bool has_shape[1 + HF_LOAD_CASES_MAX];
-    int state;                   /* of the samples that are being solved */
-    hf_built_linear linear;      /* the net linearised last; not factored before the first one */
-    hf_built_errors errors;      /* made only with samples */
-    hf_workspace design, of_net; /* views of a shape; other objects own the arrays */
+    hf_built_loaded loaded[1 + HF_LOAD_CASES_MAX]; /* [n_sample_state] by state, from 1 */
+    int state;                                     /* of the samples that are being solved */
+    hf_built_linear linear;                        /* the net linearised last; not factored before the first one */
+    hf_built_errors errors;                        /* made only with samples */
+    hf_workspace design, of_net;                   /* views of a shape; other objects own the arrays */
     hf_objectives_take *take;
     void *context;
     double *cut_m, *EA_N, *move_m, *load_N; /* [n_cable] or [3][n_node] by row, of one net */
@@ -66,10 +63,8 @@ static void close_room(void *room)
 {
     nets_room *r = room;
     if (!r) return;
-    for (int s = 0; s <= HF_LOAD_CASES_MAX; s++) {
-        hf_built_batch_free(r->loaded_batch[s]);
-        hf_built_free(&r->loaded[s]);
-    }
+    for (int s = 0; s <= HF_LOAD_CASES_MAX; s++)
+        hf_built_loaded_free(&r->loaded[s]);
     hf_built_batch_free(r->batch);
     hf_built_linear_free(&r->linear);
     hf_arena_free_block(r->errors.block);
@@ -117,13 +112,17 @@ static int first_of_state(const hf_built_nets *nets, int state)
 static void make_sample(void *room, long i, double *cut_m, double *EA_N, double *move_m)
 {
     nets_room *r = room;
-    const hf_built_nets *nets = r->nets;
     hf_built_errors_draw(&r->errors, i, r->z);
     if (r->state == 0)
         hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
     else
-        hf_built_errors_apply_in(&r->errors, &nets->load_cases->load_case[nets->sample_load_case[r->state]],
-                                 nets->load_cases->material.expansion_per_K, 1, r->z, cut_m, EA_N, move_m);
+        hf_built_loaded_apply(&r->loaded[r->state], &r->errors, 1, r->z, cut_m, EA_N, move_m);
+}
+
+/* Returns the displacements of the attachments by the truss alone in load case k, NULL without a truss. */
+static const double *attachment_move_of(const hf_built_nets *nets, int k)
+{
+    return nets->attachment_move_m ? nets->attachment_move_m + 3 * (ptrdiff_t)k * nets->model->n_attachment : NULL;
 }
 
 /* Sets *net to a load case or a sample, in the arrays of the room. */
@@ -134,10 +133,8 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
     int state, i_load_case = load_case_of(nets, i_net, &state);
     size_t n = (size_t)m->n_cable * sizeof(double);
     if (i_load_case >= 0) {
-        const double *move_m = nets->attachment_move_m;
-        if (move_m) move_m += 3 * (size_t)i_load_case * (size_t)m->n_attachment;
-        hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i_load_case], move_m,
-                           r->cut_m, r->move_m, r->load_N, net);
+        hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i_load_case],
+                           attachment_move_of(nets, i_load_case), r->cut_m, r->move_m, r->load_N, net);
         if (state < 0) return;
     } else {
         *net = (hf_built_net){.cut_m = r->cut_m};
@@ -205,8 +202,8 @@ static void solve_nets(void *room, int first, int n, hf_objectives_take *take, v
         load_case_of(nets, i, &r->state);
         int first_here = first_of_state(nets, r->state), next = first_of_state(nets, r->state + 1);
         if (next > end) next = end;
-        hf_built_batch *batch = r->state == 0 ? r->batch : r->loaded_batch[r->state];
-        bool has_shape = r->state == 0 || r->has_shape[r->state];
+        hf_built_batch *batch = r->state == 0 ? r->batch : r->loaded[r->state].batch;
+        bool has_shape = r->state == 0 || r->loaded[r->state].has_shape;
         if (has_shape)
             hf_built_batch_run(batch, hf_built_errors_vary(&r->errors), i - first_here, next - i, make_sample,
                                take_from_lane, r);
@@ -221,18 +218,16 @@ static void solve_nets(void *room, int first, int n, hf_objectives_take *take, v
  * are. */
 static hf_status load_state(nets_room *r, int state)
 {
-    hf_built_net net;
-    hf_form_result result;
+    const hf_built_nets *nets = r->nets;
+    hf_built_loaded *to = &r->loaded[state];
     hf_messages messages = {0};
-    make_net(r, r->nets->sample_load_case[state], &net);
-    const hf_workspace *w = hf_built_batch_find(r->batch, &net, &result);
-    r->has_shape[state] = result.status == HF_OK;
-    if (!r->has_shape[state]) return HF_OK;
-    hf_status status = hf_built_in_load_case(&r->built, &net, w, &r->loaded[state], &messages);
+    int k = nets->sample_load_case[state];
+    to->load_case = &nets->load_cases->load_case[k];
+    to->material = &nets->load_cases->material;
+    to->attachment_move_m = attachment_move_of(nets, k);
+    hf_status status = hf_built_loaded_make(&r->built, r->batch, 1, to, &messages);
     hf_messages_free(&messages);
-    HF_TRY(status);
-    if (!r->loaded_batch[state]) return hf_built_batch_create(&r->loaded[state], 1, &r->loaded_batch[state]);
-    return hf_built_batch_renew(r->loaded_batch[state]);
+    return status;
 }
 
 /* Cuts the nets for the design in the workspace, as hf_objectives_nets.cut. */

@@ -10,7 +10,7 @@
  * memory. */
 #pragma once
 
-#include "built/errors.h"
+#include "built/loaded.h"
 #include <hifdm/objectives.h>
 
 /* Samples in load cases: state 0 of a sample is the one without load case, state s > 0 that in load case

@@ -164,17 +164,6 @@ void hf_built_errors_apply(const hf_built_errors *e, double scale, const double 
         support_displacement_m[k % 3 * m->n_node + m->attachment_row[k / 3]] += scale * truss_move_of(e, k, z);
 }
 
-void hf_built_errors_apply_in(const hf_built_errors *e, const hf_load_case *load_case, const double *expansion_per_K,
-                              double scale, const double *z, double *cut_m, double *EA_N,
-                              double *support_displacement_m)
-{
-    const hf_model *m = &e->linear->built->model;
-    memcpy(cut_m, m->target, (size_t)m->n_cable * sizeof *cut_m);
-    hf_built_errors_apply(e, scale, z, cut_m, EA_N, support_displacement_m);
-    for (int i = 0; i < m->n_cable; i++)
-        if (load_case->rise_K[i] != 0) cut_m[i] *= 1 + expansion_per_K[i] * load_case->rise_K[i];
-}
-
 /* ---- first order ---- */
 
 void hf_built_errors_strain(const hf_built_errors *e, double scale, const double *z, double *strain_N, double *move_m)

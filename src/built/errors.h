@@ -8,7 +8,6 @@
 
 #include "built/linear.h"
 #include <hifdm/built_batch.h>
-#include <hifdm/load_cases.h>
 
 /* X(name, word, items of a kind). A relative error is the sum of the cable's own one and of its spool's, which all
  * cables of the spool share. */
@@ -86,12 +85,6 @@ void hf_built_errors_draw(const hf_built_errors *errors, long sample, double *z)
  * support_displacement_m [3][n_node] by row. EA_N and support_displacement_m may be NULL when they do not vary. */
 void hf_built_errors_apply(const hf_built_errors *errors, double scale, const double *z, double *cut_m, double *EA_N,
                            double *support_displacement_m);
-
-/* Does the same in a load case. The errors change the nominal cut lengths, and the temperature of the load case changes
- * the lengths as cut. Whatever cut_m contains is replaced. expansion_per_K [n_cable] is that of the cables. */
-void hf_built_errors_apply_in(const hf_built_errors *errors, const hf_load_case *load_case,
-                              const double *expansion_per_K, double scale, const double *z, double *cut_m, double *EA_N,
-                              double *support_displacement_m);
 
 /* Computes the first-order effect of the numbers z, times `scale`, as hf_built_linear_apply expects it: strain_N
  * [n_cable], move_m [n_dof]. */

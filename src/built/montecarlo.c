@@ -67,42 +67,24 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
     return hf_surface_design_make(surface, facets, &b->model, b->position_m, b->tension_N, &t->design);
 }
 
-/* Finds the nominal shape of a load case, and makes the net whose samples are near it. */
+/* Makes the net of a load case, near which its samples are. */
 static hf_status make_load_case(hf_montecarlo *t, const double *attachment_move_m, hf_montecarlo_load_case *to,
                                 hf_messages *messages)
 {
-    const hf_built *b = t->built;
     const hf_load_cases *cases = t->required->load_cases;
-    hf_workspace w = {0};
-    hf_built_net net;
-    hf_form_result r;
-    double *cut_m, *move_m, *load_N;
-    void *block;
-    size_t n = 3 * (size_t)b->model.n_node;
+    hf_built_loaded *net = &to->net;
     int k = to->state - 1;
-    to->load_case = &cases->load_case[k];
-    to->expansion_per_K = cases->material.expansion_per_K;
-    if (attachment_move_m) attachment_move_m += 3 * (size_t)k * (size_t)b->model.n_attachment;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(cut_m, b->model.n_cable), HF_ARRAY(move_m, n), HF_ARRAY(load_N, n)));
-    hf_status status = hf_workspace_create(&b->model, &w);
-    w.stop = b->stop;
-    if (status == HF_OK) {
-        hf_built_load_case(b, &cases->material, to->load_case, attachment_move_m, cut_m, move_m, load_N, &net);
-        hf_built_solve(b, &net, &w, &r);
-        if (r.status == HF_OK) status = hf_built_in_load_case(b, &net, &w, &to->built, messages);
-        if (hf_built_must_stop(b)) status = HF_INTERRUPTED;
-    }
-    if (status == HF_OK && r.status == HF_OK)
-        status = hf_built_batch_create(&to->built, hf_built_batch_threads(t->batch), &to->batch);
-    if (status == HF_OK && to->batch && hf_required_needs_surface(t->required, true, to->state))
-        status = hf_surface_design_make(t->surface, t->facets, &b->model, to->built.position_m, to->built.tension_N,
-                                        &to->design);
-    if (status == HF_OK && to->batch)
-        status = hf_required_radio_near(
-            t->required, &(hf_required_net){&b->model, to->built.position_m, to->built.tension_N}, to->antenna);
-    hf_workspace_free(&w);
-    hf_arena_free_block(block);
-    return status;
+    net->load_case = &cases->load_case[k];
+    net->material = &cases->material;
+    if (attachment_move_m)
+        net->attachment_move_m = attachment_move_m + 3 * (size_t)k * (size_t)t->built->model.n_attachment;
+    HF_TRY(hf_built_loaded_make(t->built, NULL, hf_built_batch_threads(t->batch), net, messages));
+    if (!net->has_shape) return HF_OK;
+    if (hf_required_needs_surface(t->required, true, to->state))
+        HF_TRY(hf_surface_design_make(t->surface, t->facets, &t->built->model, net->built.position_m,
+                                      net->built.tension_N, &to->design));
+    return hf_required_radio_near(
+        t->required, &(hf_required_net){&t->built->model, net->built.position_m, net->built.tension_N}, to->antenna);
 }
 
 hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const double *attachment_move_m,
@@ -129,10 +111,8 @@ hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const do
 
 void hf_montecarlo_free(hf_montecarlo *t)
 {
-    for (int k = 0; k < t->n_load_case; k++) {
-        hf_built_batch_free(t->load_case[k].batch);
-        hf_built_free(&t->load_case[k].built);
-    }
+    for (int k = 0; k < t->n_load_case; k++)
+        hf_built_loaded_free(&t->load_case[k].net);
     hf_arena_free_block(t->required_block);
     hf_built_batch_free(t->batch);
     hf_directions_free(&t->directions);
@@ -170,8 +150,8 @@ static void make_loaded(void *context, long i, double *cut_m, double *EA_N, doub
 {
     const loaded_samples *l = context;
     const hf_montecarlo *t = l->t;
-    hf_built_errors_apply_in(&t->errors, l->load_case->load_case, l->load_case->expansion_per_K, t->scale,
-                             t->z + (size_t)(i - t->first) * t->n_z, cut_m, EA_N, support_displacement_m);
+    hf_built_loaded_apply(&l->load_case->net, &t->errors, t->scale, t->z + (size_t)(i - t->first) * t->n_z, cut_m, EA_N,
+                          support_displacement_m);
 }
 
 /* ---- measures ---- */
@@ -308,10 +288,10 @@ static void take_loaded(void *context, long i, const hf_built_shape *shape, cons
     hf_surface_paths paths = {NAN, NAN, NAN, NAN};
     if (r->status != HF_OK) return; /* the values are NaN already */
     if (hf_required_needs_surface(t->required, true, c->state) &&
-        hf_surface_measure_near(&c->design, t->surface, t->facets, &c->built.model, shape->position_m, shape->tension_N,
-                                &paths) != HF_OK)
+        hf_surface_measure_near(&c->design, t->surface, t->facets, &c->net.built.model, shape->position_m,
+                                shape->tension_N, &paths) != HF_OK)
         t->has_no_memory = true;
-    measure_required(t, &c->built.model, c->state, c->antenna, shape, r, &paths, row_of(t, i));
+    measure_required(t, &c->net.built.model, c->state, c->antenna, shape, r, &paths, row_of(t, i));
 }
 
 /* ---- first order ---- */
@@ -360,8 +340,8 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
     hf_parallel_each(hf_built_batch_threads(t->batch), (n + AT_ONCE - 1) / AT_ONCE, predict, t);
     for (int k = 0; k < t->n_load_case; k++) {
         loaded_samples loaded = {t, &t->load_case[k]};
-        if (loaded.load_case->batch)
-            hf_built_batch_run(loaded.load_case->batch, t->varies, first, n, make_loaded, take_loaded, &loaded);
+        const hf_built_loaded *net = &loaded.load_case->net;
+        if (net->has_shape) hf_built_batch_run(net->batch, t->varies, first, n, make_loaded, take_loaded, &loaded);
     }
     if (t->required) find_margins(t, n);
     if (hf_built_must_stop(t->built)) return HF_INTERRUPTED;

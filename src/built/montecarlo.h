@@ -2,6 +2,7 @@
 #pragma once
 
 #include "built/directions.h"
+#include "built/loaded.h"
 #include "built/required.h"
 #include <hifdm/built_batch.h>
 #include "surface/gain.h"
@@ -12,13 +13,10 @@
 
 /* The samples of one load case. */
 typedef struct {
-    int state;                     /* 1 + number of the load case */
-    const hf_load_case *load_case; /* its temperatures */
-    const double *expansion_per_K; /* [n_cable] */
-    hf_built built;                /* the nominal net in this load case */
-    hf_built_batch *batch;         /* NULL: the nominal net has no shape in this load case */
-    hf_surface_design design;      /* starting values of the best fits of its samples */
-    hf_antenna *antenna;           /* [required->n_antenna] the same for figures at a frequency */
+    int state; /* 1 + number of the load case */
+    hf_built_loaded net;
+    hf_surface_design design; /* starting values of the best fits of its samples */
+    hf_antenna *antenna;      /* [required->n_antenna] the same for figures at a frequency */
 } hf_montecarlo_load_case;
 
 /* Holds everything that samples need. It must not be moved in memory, because its members point to each other. */

@@ -123,7 +123,7 @@ static void apply_errors(study *s, long i, double *cut_m, double *EA_N, double *
     }
     memcpy(cut_m, s->built.scene.target, (size_t)s->built.model.n_cable * sizeof *cut_m);
     hf_built_errors_apply(&s->m.errors, 1, s->z, cut_m, EA_N, move_m);
-    const hf_load_case *c = s->now->load_case;
+    const hf_load_case *c = s->now->net.load_case;
     for (int e = 0; e < s->built.model.n_cable; e++)
         cut_m[e] *= 1 + s->cases.material.expansion_per_K[e] * c->rise_K[e];
 }
@@ -140,7 +140,7 @@ static void solve_again(study *s, long i, hf_form_result *r)
     size_t n = 3 * (size_t)m->n_node;
     hf_built_net net;
     int k = s->now->state - 1;
-    hf_built_load_case(&s->built, &s->cases.material, s->now->load_case,
+    hf_built_load_case(&s->built, &s->cases.material, s->now->net.load_case,
                        m->n_attachment ? s->attachment_move_m + 3 * k * m->n_attachment : NULL, s->load_cut_m,
                        s->load_move_m, s->load_N, &net);
     memcpy(s->move_m, s->load_move_m, n * sizeof(double));
@@ -166,8 +166,8 @@ static void demand_shape(const study *s, const char *what, long i, const double 
     const hf_model *m = &s->built.model;
     for (int k = 0; k < 3 * m->n_node; k++)
         ck_assert_msg(fabs(position_m[k] - s->work.position_m[k]) < near_m(r),
-                      "%s, %s %ld: row %d is %g m away; %d slack cables, %d loose nodes", s->now->load_case->name, what,
-                      i, k % m->n_node, position_m[k] - s->work.position_m[k], r->n_slack, r->n_loose);
+                      "%s, %s %ld: row %d is %g m away; %d slack cables, %d loose nodes", s->now->net.load_case->name,
+                      what, i, k % m->n_node, position_m[k] - s->work.position_m[k], r->n_slack, r->n_loose);
     for (int e = 0; e < m->n_cable; e++)
         ck_assert_double_eq_tol(tension_N[e], s->work.tension_N[e], 1e-6 * m->reference_N);
 }
@@ -245,7 +245,7 @@ static void hold_against(void *context, long i, const hf_built_shape *shape, con
     double deflection_m = demand_displacements(&s->built.model, s->work.position_m, s->work.displacement_m, s->move_m);
     for (int k = 0; k < 3 * s->built.model.n_node; k++)
         s->move_m[k] -= s->load_move_m[k]; /* the net in the load case has these already */
-    demand_displacements(&s->now->built.model, shape->position_m, shape->displacement_m, s->move_m);
+    demand_displacements(&s->now->net.built.model, shape->position_m, shape->displacement_m, s->move_m);
     ck_assert_double_eq_tol(value_of(s, i, HF_REQUIRED_DEFLECTION, false), deflection_m, 1e-9);
 }
 
@@ -257,7 +257,7 @@ START_TEST(samples_in_load_cases_are_those_of_the_reference)
     for (int k = 0; k < N_LOAD_CASE; k++) {
         s.now = &s.m.load_case[k];
         ck_assert_int_eq(s.now->state, 1 + k);
-        hf_built_batch_run(s.now->batch, s.m.varies, 0, N_SAMPLE, make, hold_against, &s);
+        hf_built_batch_run(s.now->net.batch, s.m.varies, 0, N_SAMPLE, make, hold_against, &s);
     }
     ck_assert_int_eq(s.n_done, N_LOAD_CASE * N_SAMPLE);
     if (_i % 5 == 4) ck_assert_int_gt(s.n_slack, 0);
@@ -274,7 +274,7 @@ START_TEST(a_net_in_a_load_case_is_that_of_the_load_case)
     for (int k = 0; k < N_LOAD_CASE; k++) {
         hf_form_result loaded, again;
         s.now = &s.m.load_case[k];
-        const hf_built *b = &s.now->built;
+        const hf_built *b = &s.now->net.built;
         solve_again(&s, -1, &loaded);
         ck_assert_int_eq(loaded.status, HF_OK);
         demand_shape(&s, "nominal", -1, b->position_m, b->tension_N, &loaded);
