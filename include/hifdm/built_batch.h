@@ -3,7 +3,7 @@
  *
  * Pipeline for eight samples at a time in vector lanes:
  *
- *   hf_built_sample   index -> lengths, stiffness and supports of the sample
+ *   hf_built_sample   index -> lengths, stiffness, supports and loads of the sample
  *   solver            steps with the matrix of the nominal net (M33), then Newton's method (M34), then hf_built_solve
  *   hf_built_take     receives shape and result -> measures of the caller
  *
@@ -19,8 +19,9 @@ HF_API_BEGIN
 
 /* These flags select the quantities that vary between samples in addition to the cable lengths. */
 enum {
-    HF_BUILT_VARIES_EA = 1,      /* axial stiffness of cables */
-    HF_BUILT_VARIES_SUPPORTS = 2 /* positions of supports */
+    HF_BUILT_VARIES_EA = 1,       /* axial stiffness of cables */
+    HF_BUILT_VARIES_SUPPORTS = 2, /* positions of supports */
+    HF_BUILT_VARIES_LOADS = 4     /* loads of nodes, of a net whose model has loads */
 };
 
 /* Points to the arrays that describe the shape of one sample. The arrays of the shape are valid only during the call of
@@ -34,12 +35,13 @@ typedef struct {
 } hf_built_shape;
 
 /* Defines sample i. On entry, the arrays cut_m [n_cable] and EA_N [n_cable] contain the nominal values, and the array
- * support_displacement_m [3][n_node] contains zeros. The callback changes the arrays to the values of sample i. The
- * struct hf_built_net describes the arrays cut_m, EA_N and support_displacement_m. If the stiffness does not vary, EA_N
- * is NULL. If the supports do not vary, support_displacement_m is NULL. Several threads may call the callback at the
+ * support_displacement_m [3][n_node] contains zeros. The array load_N [3][n_node] contains the loads of the nominal
+ * net. The callback changes the arrays to the values of sample i. The struct hf_built_net describes the arrays. The
+ * arrays of quantities that do not vary are NULL. Several threads may call the callback at the
  * same time. The callback may be called more than once for the same sample. The values that the callback writes must
  * depend on i alone. */
-typedef void hf_built_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m);
+typedef void hf_built_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m,
+                             double *load_N);
 
 /* Receives the shape and the result of sample i. Several threads may call the callback at the same time, and for the
  * samples in any order. */

@@ -12,6 +12,7 @@ HF_API_BEGIN
  * the members in the truss. Values that the case does not give are zero. */
 typedef struct {
     const char *name;               /* name of the load case; borrowed */
+    bool has_temperature;           /* true if the load case gives a temperature to cables, even a rise of 0 */
     double *rise_K;                 /* [n_cable] rise above the temperature at which the cables were cut */
     double *member_rise_K;          /* [n_member] rise above the temperature at which the truss was made */
     double *force_N;                /* [n_node][3] forces in addition to the loads of the design */

@@ -369,7 +369,9 @@ typedef struct {
     double sigma_support_m;              /* error of each coordinate of a support */
     double sigma_EA_ratio;               /* error of EA relative to EA */
     double sigma_temperature_K;          /* error of the temperature, which is the same for all cables */
-    hf_distribution distribution;        /* distribution of the errors */
+    /* errors of what load cases prescribe: temperature of the cables, gravity and forces relative to their values */
+    double sigma_load_case_temperature_K, sigma_gravity_ratio, sigma_force_ratio;
+    hf_distribution distribution; /* distribution of the errors */
     double batch;         /* correlation of the relative length errors, and of the relative EA errors, within a spool */
     int samples;          /* number of samples */
     uint64_t seed;        /* seed of the random numbers */
@@ -379,6 +381,12 @@ typedef struct {
     hf_require_settings require[HF_REQUIRE_ROWS_MAX];     /* [n_require] rows of tolerance.require */
     hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX]; /* [n_truss] rows of tolerance.truss */
 } hf_tolerance_settings;
+
+/* Returns true if temperatures of cables have errors. */
+static inline bool hf_tolerance_is_warm(const hf_tolerance_settings *s)
+{
+    return s->sigma_temperature_K > 0 || s->sigma_load_case_temperature_K > 0;
+}
 
 /* A radio figure belongs to one of two feeds. The refocused feed follows the best fit of the target surface to the
  * shape in position, direction and focal length. The fixed feed remains where the target surface has it. */

@@ -194,10 +194,12 @@ static void print_wishes(const hf_check *c, FILE *f)
 static void print_tolerance(const hf_case *c, FILE *f)
 {
     const hf_tolerance_settings *t = &c->tolerance;
-    const double sigma[] = {t->sigma_cut_m, t->sigma_cut_ratio, t->sigma_EA_ratio, t->sigma_support_m,
-                            t->sigma_temperature_K};
+    const double sigma[] = {t->sigma_cut_m,         t->sigma_cut_ratio,     t->sigma_EA_ratio,
+                            t->sigma_support_m,     t->sigma_temperature_K, t->sigma_load_case_temperature_K,
+                            t->sigma_gravity_ratio, t->sigma_force_ratio};
     static const char *const of[][2] = {
-        {"cuts", " m"}, {"cuts", " of the length"}, {"EA", " of it"}, {"supports", " m"}, {"temperature", " K"}};
+        {"cuts", " m"},        {"cuts", " of the length"},          {"EA", " of it"},      {"supports", " m"},
+        {"temperature", " K"}, {"temperature of load cases", " K"}, {"gravity", " of it"}, {"forces", " of them"}};
     if (!c->has_tolerance) return;
     fprintf(f, "                as built: %d nets (%s numbers, %s errors, seed %llu)", t->samples,
             hf_sampling_word[t->sampling], hf_distribution_word[t->distribution], (unsigned long long)t->seed);

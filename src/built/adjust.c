@@ -452,14 +452,15 @@ static hf_status answer_samples(adjustment *a)
 }
 
 /* Makes sample i: the estimated errors, its posterior errors and the adjustments. */
-static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m,
+                        double *load_N)
 {
     const adjustment *a = context;
     const hf_estimate *p = a->estimate;
     const hf_model *m = &p->built->model;
     const double *own_m = a->cause.cut_m + (size_t)i * (size_t)m->n_cable;
     const double *rest_m = a->cause.rest_m + (size_t)i * a->n_dof;
-    (void)EA_N;
+    (void)EA_N, (void)load_N;
     for (int e = 0; e < m->n_cable; e++)
         cut_m[e] += p->cut_m[e] + own_m[e] + a->adjustment_m[e];
     for (int row = m->n_free; row < m->n_node; row++)

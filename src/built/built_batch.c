@@ -1,6 +1,6 @@
 /* Solves many samples of an as-built net on all cores (METHOD section 12). Each thread runs this pipeline:
  *
- *     queue of sample numbers ---> make_sample: cut lengths, EA and positions of supports of the sample
+ *     queue of sample numbers ---> make_sample: cut lengths, EA, positions of supports and loads of the sample
  *                                    |
  *                                    v
  *                                  chord steps, eight samples in the lanes of the vectors (built/near)
@@ -30,6 +30,8 @@ typedef struct {
     hf_near_lanes near;
     double *cut_m, *EA_N;           /* [HF_LANES][n_cable] of the samples in the lanes */
     double *support_displacement_m; /* [HF_LANES][3][n_node] by row */
+    /* [HF_LANES][3][n_node] by row, and [3][n_node][HF_LANES] for the kernels; none if the net has no loads */
+    double *load_N, *load_lanes_N;
     void *block;
 } batch_room;
 
@@ -47,7 +49,8 @@ struct hf_built_batch {
 static hf_status make_room(const hf_built_batch *batch, batch_room *room)
 {
     const hf_model *m = &batch->built->model;
-    size_t n = (size_t)m->n_cable * HF_LANES;
+    size_t n = (size_t)m->n_cable * HF_LANES, n_coordinate = 3 * (size_t)m->n_node * HF_LANES;
+    size_t n_load = m->load_N ? n_coordinate : 0;
     if (room->block) return HF_OK;
     if (!room->work.block && hf_workspace_create(m, &room->work) != HF_OK) return HF_NO_MEMORY;
     if (batch->has_lanes && !room->near.block && hf_near_lanes_create(&batch->near, &room->near) != HF_OK) {
@@ -55,7 +58,8 @@ static hf_status make_room(const hf_built_batch *batch, batch_room *room)
         return HF_NO_MEMORY;
     }
     return HF_ARENA_ARRAYS(&room->block, HF_ARRAY(room->cut_m, n), HF_ARRAY(room->EA_N, n),
-                           HF_ARRAY(room->support_displacement_m, 3 * (size_t)m->n_node * HF_LANES));
+                           HF_ARRAY(room->support_displacement_m, n_coordinate), HF_ARRAY(room->load_N, n_load),
+                           HF_ARRAY(room->load_lanes_N, n_load));
 }
 
 /* ---- the batch ---- */
@@ -132,13 +136,16 @@ static void make_sample(batch_work *work, int lane, int i)
     const hf_built *b = j->batch->built;
     size_t n = (size_t)b->model.n_cable, n_coordinate = 3 * (size_t)b->model.n_node;
     bool has_EA = j->varies & HF_BUILT_VARIES_EA, has_supports = j->varies & HF_BUILT_VARIES_SUPPORTS;
+    bool has_loads = j->varies & HF_BUILT_VARIES_LOADS;
     double *cut_m = work->room->cut_m + (size_t)lane * n, *EA_N = work->room->EA_N + (size_t)lane * n;
     double *move_m = has_supports ? work->room->support_displacement_m + (size_t)lane * n_coordinate : NULL;
+    double *load_N = has_loads ? work->room->load_N + (size_t)lane * n_coordinate : NULL;
     memcpy(cut_m, b->model.target, n * sizeof(double));
     memcpy(EA_N, b->model.EA_N, n * sizeof(double));
     if (has_supports) memset(move_m, 0, n_coordinate * sizeof(double));
-    j->make(j->context, j->first + i, cut_m, has_EA ? EA_N : NULL, move_m);
-    work->net[lane] = (hf_built_net){cut_m, EA_N, move_m, NULL};
+    if (has_loads) memcpy(load_N, b->model.load_N, n_coordinate * sizeof(double));
+    j->make(j->context, j->first + i, cut_m, has_EA ? EA_N : NULL, move_m, load_N);
+    work->net[lane] = (hf_built_net){cut_m, EA_N, move_m, load_N};
 }
 
 /* Passes the shape of sample i, which the workspace holds, to the caller's function. */
@@ -223,6 +230,7 @@ static void work_on_job(void *context, int i_room)
     batch_work work = {.job = j, .room = &j->batch->room[i_room]};
     if (hf_parallel_is_empty(&j->queue) || make_room(j->batch, work.room) != HF_OK) return;
     work.room->work.stop = j->batch->built->stop;
+    work.room->near.lanes.load_N = j->varies & HF_BUILT_VARIES_LOADS ? work.room->load_lanes_N : NULL;
     if (j->batch->has_lanes) {
         hf_lane_schedule_run(&in_lanes, &work, take_next, j);
         return;

@@ -1,10 +1,9 @@
 /* Sets the cut lengths, supports and loads of the as-built net in one load case (METHOD section 12). */
-#include <hifdm/built.h>
+#include "built/loaded.h"
 
 #include "linalg/dot.h"
 
-/* Adds the weights of nodes and cables under the gravity g to load_N [3][n_node] by row. */
-static void add_weight(const hf_built *b, const hf_material *t, const double g[3], double *load_N)
+void hf_built_add_weight(const hf_built *b, const hf_material *t, const double g[3], double *load_N)
 {
     const hf_model *m = &b->model;
     const hf_scene *s = &b->scene;
@@ -39,6 +38,6 @@ void hf_built_load_case(const hf_built *b, const hf_material *t, const hf_load_c
     for (int k = 0; attachment_move_m && k < m->n_attachment; k++)
         for (size_t c = 0; c < 3; c++)
             move_m[c * n + (size_t)m->attachment_row[k]] += attachment_move_m[3 * k + (int)c];
-    if (g[0] != 0 || g[1] != 0 || g[2] != 0) add_weight(b, t, g, load_N);
+    if (g[0] != 0 || g[1] != 0 || g[2] != 0) hf_built_add_weight(b, t, g, load_N);
     *net = (hf_built_net){.cut_m = cut_m, .support_displacement_m = move_m, .load_N = load_N};
 }

@@ -109,20 +109,19 @@ static int first_of_state(const hf_built_nets *nets, int state)
 }
 
 /* Makes sample i in the state of the room, as an hf_built_sample. */
-static void make_sample(void *room, long i, double *cut_m, double *EA_N, double *move_m)
+static void make_sample(void *room, long i, double *cut_m, double *EA_N, double *move_m, double *load_N)
 {
     nets_room *r = room;
     hf_built_errors_draw(&r->errors, i, r->z);
     if (r->state == 0)
         hf_built_errors_apply(&r->errors, 1, r->z, cut_m, EA_N, move_m);
     else
-        hf_built_loaded_apply(&r->loaded[r->state], &r->errors, 1, r->z, cut_m, EA_N, move_m);
+        hf_built_loaded_apply(&r->loaded[r->state], &r->errors, 1, i, r->z, cut_m, EA_N, move_m, load_N);
 }
 
-/* Returns the displacements of the attachments by the truss alone in load case k, NULL without a truss. */
-static const double *attachment_move_of(const hf_built_nets *nets, int k)
+static unsigned vary_in(const nets_room *r, int state)
 {
-    return nets->attachment_move_m ? nets->attachment_move_m + 3 * (ptrdiff_t)k * nets->model->n_attachment : NULL;
+    return state == 0 ? hf_built_errors_vary(&r->errors) : hf_built_loaded_vary(&r->loaded[state], &r->errors);
 }
 
 /* Sets *net to a load case or a sample, in the arrays of the room. */
@@ -133,21 +132,24 @@ static void make_net(nets_room *r, int i_net, hf_built_net *net)
     int state, i_load_case = load_case_of(nets, i_net, &state);
     size_t n = (size_t)m->n_cable * sizeof(double);
     if (i_load_case >= 0) {
-        hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i_load_case],
-                           attachment_move_of(nets, i_load_case), r->cut_m, r->move_m, r->load_N, net);
+        const double *move_m = nets->rest.move_m;
+        if (move_m) move_m += 3 * (size_t)i_load_case * (size_t)m->n_attachment;
+        hf_built_load_case(&r->built, &nets->load_cases->material, &nets->load_cases->load_case[i_load_case], move_m,
+                           r->cut_m, r->move_m, r->load_N, net);
         if (state < 0) return;
     } else {
         *net = (hf_built_net){.cut_m = r->cut_m};
         memset(r->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
     }
-    unsigned varies = hf_built_errors_vary(&r->errors);
+    unsigned varies = vary_in(r, state);
     bool moves = varies & HF_BUILT_VARIES_SUPPORTS;
     if (varies & HF_BUILT_VARIES_EA) net->EA_N = r->EA_N;
     if (moves) net->support_displacement_m = r->move_m;
     memcpy(r->cut_m, m->target, n);
     memcpy(r->EA_N, m->EA_N, n);
     r->state = state;
-    make_sample(r, i_net - first_of_state(nets, state), r->cut_m, net->EA_N ? r->EA_N : NULL, moves ? r->move_m : NULL);
+    make_sample(r, i_net - first_of_state(nets, state), r->cut_m, net->EA_N ? r->EA_N : NULL, moves ? r->move_m : NULL,
+                varies & HF_BUILT_VARIES_LOADS ? r->load_N : NULL);
 }
 
 /* ---- shapes ---- */
@@ -205,8 +207,7 @@ static void solve_nets(void *room, int first, int n, hf_objectives_take *take, v
         hf_built_batch *batch = r->state == 0 ? r->batch : r->loaded[r->state].batch;
         bool has_shape = r->state == 0 || r->loaded[r->state].has_shape;
         if (has_shape)
-            hf_built_batch_run(batch, hf_built_errors_vary(&r->errors), i - first_here, next - i, make_sample,
-                               take_from_lane, r);
+            hf_built_batch_run(batch, vary_in(r, r->state), i - first_here, next - i, make_sample, take_from_lane, r);
         for (; i < next; i++)
             if (!has_shape) take(context, i, NULL);
     }
@@ -221,10 +222,7 @@ static hf_status load_state(nets_room *r, int state)
     const hf_built_nets *nets = r->nets;
     hf_built_loaded *to = &r->loaded[state];
     hf_messages messages = {0};
-    int k = nets->sample_load_case[state];
-    to->load_case = &nets->load_cases->load_case[k];
-    to->material = &nets->load_cases->material;
-    to->attachment_move_m = attachment_move_of(nets, k);
+    hf_built_loaded_select(nets->load_cases, nets->sample_load_case[state], &nets->rest, nets->model->n_attachment, to);
     hf_status status = hf_built_loaded_make(&r->built, r->batch, 1, to, &messages);
     hf_messages_free(&messages);
     return status;
@@ -267,14 +265,23 @@ static void find_stretch(nets_room *r, int i_net)
     }
     r->has_weight = false;
     if (i_load_case < 0) return;
+    double warmer_K = 0, heavier = 0;
+    if (state >= 0) {
+        const hf_built_loaded *loaded = &r->loaded[state];
+        int i = i_net - first_of_state(nets, state);
+        warmer_K = hf_built_loaded_error(loaded, &r->errors, i, HF_LOAD_ERROR_TEMPERATURE);
+        heavier = hf_built_loaded_error(loaded, &r->errors, i, HF_LOAD_ERROR_GRAVITY);
+    }
     const hf_load_case *load_case = &nets->load_cases->load_case[i_load_case];
     const hf_material *t = &nets->load_cases->material;
-    for (int e = 0; e < m->n_cable; e++)
-        if (load_case->rise_K[e] != 0) r->stretch[e] *= 1 + t->expansion_per_K[e] * load_case->rise_K[e];
+    for (int e = 0; e < m->n_cable; e++) {
+        double rise_K = load_case->rise_K[e] + warmer_K;
+        if (rise_K != 0) r->stretch[e] *= 1 + t->expansion_per_K[e] * rise_K;
+    }
     for (int c = 0; c < 3; c++)
         r->has_weight |= load_case->gravity_m_per_s2[c] != 0;
     for (int e = 0; e < 3 * m->n_cable && r->has_weight; e++)
-        r->weight_N_per_m[e] = t->mass_kg_per_m[e / 3] * load_case->gravity_m_per_s2[e % 3];
+        r->weight_N_per_m[e] = t->mass_kg_per_m[e / 3] * load_case->gravity_m_per_s2[e % 3] * (1 + heavier);
 }
 
 /* Solves one net and factors its Hessian, as hf_objectives_nets.linearise. A net without a shape or without stiffness
@@ -377,7 +384,7 @@ static void follow_net(void *room, int n, const hf_objectives_rate *by, hf_objec
 /* ---- all nets ---- */
 
 void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
-                        const hf_load_cases *load_cases, const double *attachment_move_m,
+                        const hf_load_cases *load_cases, const hf_built_rest *rest,
                         const hf_tolerance_settings *tolerance, const hf_built_heat *heat, int n_sample,
                         hf_built_nets *nets)
 {
@@ -396,7 +403,7 @@ void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_f
                             .form = form,
                             .load_cases = load_cases,
                             .tolerance = tolerance,
-                            .attachment_move_m = attachment_move_m,
+                            .rest = *rest,
                             .heat = *heat,
                             .n_sample_state = 1};
     for (int i = 0; i < n_load_case; i++)

@@ -22,9 +22,7 @@ typedef struct {
     const hf_form_settings *form;
     const hf_load_cases *load_cases;
     const hf_tolerance_settings *tolerance;
-    /* [n_load_case][3 n_attachment] displacements of the attachments that the truss alone causes in each load case;
-     * NULL without a truss. */
-    const double *attachment_move_m;
+    hf_built_rest rest;
     hf_built_heat heat; /* effects of the temperatures of samples */
     const char *name[HF_LOAD_CASES_MAX];
     int n_sample_state;                          /* 1 if samples are needed without load case alone */
@@ -34,6 +32,6 @@ typedef struct {
 /* Makes the nets of n_sample samples and of all load cases in `states`. All pointers are borrowed. `states` is NULL
  * without load cases, `tolerance` is NULL without samples. */
 void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_form_settings *form,
-                        const hf_load_cases *load_cases, const double *attachment_move_m,
+                        const hf_load_cases *load_cases, const hf_built_rest *rest,
                         const hf_tolerance_settings *tolerance, const hf_built_heat *heat, int n_sample,
                         hf_built_nets *nets);

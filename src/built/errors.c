@@ -31,13 +31,14 @@ hf_status hf_built_errors_make(const hf_built_linear *l, const hf_tolerance_sett
     double own = sqrt(1 - t->batch), shared = sqrt(t->batch);
     const hf_built_heat none = {0};
     if (!heat) heat = &none;
-    *e = (hf_built_errors){.linear = l,
-                           .distribution = t->distribution,
-                           .seed = t->seed,
-                           .n_truss = heat->truss_move_m_per_K ? t->n_truss : 0,
-                           .sigma = {t->sigma_cut_m, own * t->sigma_cut_ratio, shared * t->sigma_cut_ratio,
-                                     own * t->sigma_EA_ratio, shared * t->sigma_EA_ratio, t->sigma_support_m,
-                                     t->sigma_temperature_K, 1}};
+    *e = (hf_built_errors){
+        .linear = l,
+        .distribution = t->distribution,
+        .seed = t->seed,
+        .n_truss = heat->truss_move_m_per_K ? t->n_truss : 0,
+        .sigma = {t->sigma_cut_m, own * t->sigma_cut_ratio, shared * t->sigma_cut_ratio, own * t->sigma_EA_ratio,
+                  shared * t->sigma_EA_ratio, t->sigma_support_m, t->sigma_temperature_K, 1},
+        .sigma_load = {t->sigma_load_case_temperature_K, t->sigma_gravity_ratio, t->sigma_force_ratio}};
     HF_TRY(HF_ARENA_ARRAYS(&e->block, HF_ARRAY(e->spool, m->n_cable), HF_ARRAY(e->support, m->n_node - m->n_free),
                            HF_ARRAY(e->expansion_per_K, m->n_cable),
                            HF_ARRAY(e->truss_move_m, 3 * (size_t)e->n_truss * (size_t)m->n_attachment)));
@@ -101,7 +102,8 @@ double hf_built_errors_largest_scale(const hf_built_errors *e)
     double max = sigma[HF_ERROR_EA] + sigma[HF_ERROR_EA_BATCH];
     for (int i = 0; i < b->model.n_cable; i++)
         max = fmax(max, sigma[HF_ERROR_RATIO] + sigma[HF_ERROR_RATIO_BATCH] + sigma[HF_ERROR_CUT] / b->model.target[i] +
-                            fabs(e->expansion_per_K[i]) * sigma[HF_ERROR_TEMPERATURE]);
+                            fabs(e->expansion_per_K[i]) *
+                                (sigma[HF_ERROR_TEMPERATURE] + e->sigma_load[HF_LOAD_ERROR_TEMPERATURE]));
     return 0.5 / (largest * max);
 }
 
@@ -120,6 +122,12 @@ void hf_built_errors_draw(const hf_built_errors *e, long sample, double *z)
             double uniform = hf_built_errors_uniform(e->seed, sample, stream, item_of(e, kind, i - e->first[kind]));
             z[i] = hf_built_errors_shape(e->distribution, uniform);
         }
+}
+
+double hf_built_errors_of_load(const hf_built_errors *e, long sample, hf_load_error kind, int i_load_case)
+{
+    double uniform = hf_built_errors_uniform(e->seed, sample, HF_LOAD_ERROR_STREAMS + (int)kind, i_load_case);
+    return e->sigma_load[kind] * hf_built_errors_shape(e->distribution, uniform);
 }
 
 /* ---- errors of a net ---- */

@@ -29,9 +29,23 @@ typedef enum { HF_ERROR_KINDS(HF_ERROR_ENUMERATOR) HF_ERROR_N_KIND } hf_error_ki
  * have the kind HF_ERROR_TEMPERATURE and the items 1 + part. */
 #define HF_ERROR_STREAMS HF_ERROR_TRUSS_TEMPERATURE
 
+/* X(name, word, units, description): the errors of what a load case prescribes, one of each kind for each sample and
+ * load case. They change no net without a load case, so they are not among the numbers z. */
+#define HF_LOAD_ERRORS(X)                                                                                              \
+    X(TEMPERATURE, "temperature_error_K", "K", "error of the temperature of all cables in this load case")             \
+    X(GRAVITY, "gravity_error_ratio", "", "error of gravity in this load case, relative to it")                        \
+    X(FORCE, "force_error_ratio", "", "error of the forces in this load case, relative to them")
+
+#define HF_LOAD_ERROR_ENUMERATOR(name, word, units, description) HF_LOAD_ERROR_##name,
+typedef enum { HF_LOAD_ERRORS(HF_LOAD_ERROR_ENUMERATOR) HF_LOAD_ERROR_N } hf_load_error;
+#undef HF_LOAD_ERROR_ENUMERATOR
+
+/* Their kinds of random numbers begin here; the item is the number of the load case. */
+enum { HF_LOAD_ERROR_STREAMS = 12 };
+
 /* Describes the effects of temperatures. A member is NULL when its temperatures do not vary. */
 typedef struct {
-    const double *expansion_per_K; /* [n_cable] of cables, needed with sigma_temperature_K */
+    const double *expansion_per_K; /* [n_cable] of cables, needed if one of their sigmas is above 0 */
     /* [n_truss][3 n_attachment] displacements of the attachments without forces, for each row of tolerance.truss. */
     const double *truss_move_m_per_K;
 } hf_built_heat;
@@ -40,11 +54,12 @@ typedef struct {
     const hf_built_linear *linear;
     hf_distribution distribution;
     uint64_t seed;
-    double sigma[HF_ERROR_N_KIND];  /* standard deviation of each kind; 0: it has no errors */
-    int first[HF_ERROR_N_KIND + 1]; /* first error of each kind; the last entry is the number of all errors */
-    int n_spool, *spool;            /* spools, and [n_cable] spool of each cable */
-    int n_support, *support;        /* [n_support] nodes of the scene, ascending */
-    double *expansion_per_K;        /* [n_cable] thermal expansion of each cable */
+    double sigma_load[HF_LOAD_ERROR_N]; /* standard deviation of each error of load cases; 0: there is none */
+    double sigma[HF_ERROR_N_KIND];      /* standard deviation of each kind; 0: it has no errors */
+    int first[HF_ERROR_N_KIND + 1];     /* first error of each kind; the last entry is the number of all errors */
+    int n_spool, *spool;                /* spools, and [n_cable] spool of each cable */
+    int n_support, *support;            /* [n_support] nodes of the scene, ascending */
+    double *expansion_per_K;            /* [n_cable] thermal expansion of each cable */
     int n_truss, part[HF_TRUSS_HEAT_ROWS_MAX]; /* part of each row of tolerance.truss */
     double *truss_move_m; /* [n_truss][3 n_attachment] displacements of the attachments by one sigma */
     void *block;
@@ -80,6 +95,9 @@ double hf_built_errors_largest_scale(const hf_built_errors *errors);
 
 /* Draws the numbers z [n] of a sample. */
 void hf_built_errors_draw(const hf_built_errors *errors, long sample, double *z);
+
+/* Returns the error of this kind in load case i_load_case, in units of the kind, of a sample. */
+double hf_built_errors_of_load(const hf_built_errors *errors, long sample, hf_load_error kind, int i_load_case);
 
 /* Applies the numbers z, times `scale`, to the nominal values in cut_m and EA_N [n_cable], and adds them to
  * support_displacement_m [3][n_node] by row. EA_N and support_displacement_m may be NULL when they do not vary. */

@@ -68,16 +68,11 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *s, const hf_built *b
 }
 
 /* Makes the net of a load case, near which its samples are. */
-static hf_status make_load_case(hf_montecarlo *t, const double *attachment_move_m, hf_montecarlo_load_case *to,
+static hf_status make_load_case(hf_montecarlo *t, const hf_built_rest *rest, hf_montecarlo_load_case *to,
                                 hf_messages *messages)
 {
-    const hf_load_cases *cases = t->required->load_cases;
     hf_built_loaded *net = &to->net;
-    int k = to->state - 1;
-    net->load_case = &cases->load_case[k];
-    net->material = &cases->material;
-    if (attachment_move_m)
-        net->attachment_move_m = attachment_move_m + 3 * (size_t)k * (size_t)t->built->model.n_attachment;
+    hf_built_loaded_select(t->required->load_cases, to->state - 1, rest, t->built->model.n_attachment, net);
     HF_TRY(hf_built_loaded_make(t->built, NULL, hf_built_batch_threads(t->batch), net, messages));
     if (!net->has_shape) return HF_OK;
     if (hf_required_needs_surface(t->required, true, to->state))
@@ -87,7 +82,7 @@ static hf_status make_load_case(hf_montecarlo *t, const double *attachment_move_
         t->required, &(hf_required_net){&t->built->model, net->built.position_m, net->built.tension_N}, to->antenna);
 }
 
-hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const double *attachment_move_m,
+hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const hf_built_rest *rest,
                                 hf_messages *messages)
 {
     if (q->n_share == 0) return HF_OK;
@@ -104,7 +99,7 @@ hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const do
         if (!(q->many >> state & 1u)) continue;
         t->load_case[t->n_load_case].state = state;
         t->load_case[t->n_load_case].antenna = t->antenna + (1 + t->n_load_case) * q->n_antenna;
-        HF_TRY(make_load_case(t, attachment_move_m, &t->load_case[t->n_load_case++], messages));
+        HF_TRY(make_load_case(t, rest, &t->load_case[t->n_load_case++], messages));
     }
     return HF_OK;
 }
@@ -126,10 +121,12 @@ void hf_montecarlo_free(hf_montecarlo *t)
 /* ---- errors of a sample ---- */
 
 /* Makes the errors of sample i, as an hf_built_sample. */
-static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+static void make_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m,
+                        double *load_N)
 {
     hf_montecarlo *t = context;
     size_t k = (size_t)(i - t->first);
+    (void)load_N;
     double *z = t->z + k * t->n_z;
     if (t->directions.n)
         hf_directions_draw(&t->directions, i, t->point + k * (size_t)t->directions.n, z);
@@ -145,13 +142,14 @@ typedef struct {
 } loaded_samples;
 
 /* Makes the errors of sample i in a load case, as an hf_built_sample. They are those of the same sample without load
- * case. */
-static void make_loaded(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+ * case, and the errors of the load case itself. */
+static void make_loaded(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m,
+                        double *load_N)
 {
     const loaded_samples *l = context;
     const hf_montecarlo *t = l->t;
-    hf_built_loaded_apply(&l->load_case->net, &t->errors, t->scale, t->z + (size_t)(i - t->first) * t->n_z, cut_m, EA_N,
-                          support_displacement_m);
+    hf_built_loaded_apply(&l->load_case->net, &t->errors, t->scale, i, t->z + (size_t)(i - t->first) * t->n_z, cut_m,
+                          EA_N, support_displacement_m, load_N);
 }
 
 /* ---- measures ---- */
@@ -341,7 +339,9 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
     for (int k = 0; k < t->n_load_case; k++) {
         loaded_samples loaded = {t, &t->load_case[k]};
         const hf_built_loaded *net = &loaded.load_case->net;
-        if (net->has_shape) hf_built_batch_run(net->batch, t->varies, first, n, make_loaded, take_loaded, &loaded);
+        if (net->has_shape)
+            hf_built_batch_run(net->batch, hf_built_loaded_vary(net, &t->errors), first, n, make_loaded, take_loaded,
+                               &loaded);
     }
     if (t->required) find_margins(t, n);
     if (hf_built_must_stop(t->built)) return HF_INTERRUPTED;

@@ -69,9 +69,8 @@ hf_status hf_montecarlo_create(const hf_tolerance_settings *settings, const hf_b
 void hf_montecarlo_free(hf_montecarlo *montecarlo);
 
 /* Adds to the samples what rows of `requirements` need: the figures, and the load cases. Call it before the first
- * sample. attachment_move_m [n load cases][3 n_attachment]: displacements of the attachments by the truss alone; NULL
- * without a truss. All arguments are borrowed. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
-hf_status hf_montecarlo_require(hf_montecarlo *montecarlo, const hf_required *required, const double *attachment_move_m,
+ * sample. All arguments are borrowed. Returns HF_OK, HF_NO_MEMORY or HF_INTERRUPTED. */
+hf_status hf_montecarlo_require(hf_montecarlo *montecarlo, const hf_required *required, const hf_built_rest *rest,
                                 hf_messages *messages);
 
 /* Returns the offset in a row of the margin of share row k, and of the values or the items of a load case. */

@@ -100,6 +100,8 @@ void hf_near_load(const hf_near *near, hf_near_lanes *l, int lane, const hf_buil
     for (int d = 0; d < 3 && net->support_displacement_m; d++)
         for (int at = d * m->n_node + m->n_free; at < (d + 1) * m->n_node; at++)
             l->lanes.x_m[at * HF_LANES + lane] += net->support_displacement_m[at];
+    for (int at = 0; at < 3 * m->n_node && l->lanes.load_N; at++)
+        l->lanes.load_N[at * HF_LANES + lane] = net->load_N[at];
     for (int e = 0; e < m->n_cable; e++) {
         l->cut_m[e * HF_LANES + lane] = net->cut_m[e];
         l->stiffness_N_per_m[e * HF_LANES + lane] = net->EA_N[e] / net->cut_m[e];
@@ -441,11 +443,18 @@ static bool accept(const hf_near *near, int n_step, hf_workspace *w, hf_form_res
     return r->status == HF_OK;
 }
 
-bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
+/* Returns `near` with the loads of a net, for functions that read its model alone. */
+static hf_near load_by(const hf_near *near, const hf_built_net *net)
 {
     hf_near loaded = *near;
-    int n_step = 0;
     if (net->load_N) loaded.model.load_N = (double *)(uintptr_t)net->load_N; /* no solver writes to load_N */
+    return loaded;
+}
+
+bool hf_near_find(const hf_near *near, const hf_built_net *net, hf_workspace *w, hf_form_result *r)
+{
+    hf_near loaded = load_by(near, net);
+    int n_step = 0;
     prepare(&loaded, net, w);
     return solve_newton(&loaded, w, &n_step) && accept(&loaded, n_step, w, r);
 }
@@ -469,11 +478,12 @@ static bool accept_slack(const hf_near *near, const hf_near_lanes *l, int lane, 
                          hf_workspace *w, hf_form_result *r)
 {
     const hf_model *m = &near->model;
+    const hf_near loaded = load_by(near, net);
     prepare(near, net, w);
     unload(near, l, lane, w);
     for (int e = 0; e < m->n_cable; e++)
         w->q_N_per_m[e] = l->lanes.variable[e * HF_LANES + lane];
-    return accept(near, l->progress.steps[lane], w, r);
+    return accept(&loaded, l->progress.steps[lane], w, r);
 }
 
 hf_near_verdict hf_near_settle(const hf_near *near, hf_near_lanes *l, int lane, const hf_built_net *net,

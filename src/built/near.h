@@ -41,7 +41,7 @@ hf_status hf_near_lanes_create(const hf_near *near, hf_near_lanes *lanes);
 void hf_near_lanes_free(hf_near_lanes *lanes);
 
 /* Puts a net into a lane, at the nominal shape. net->cut_m and net->EA_N must be given, net->support_displacement_m may
- * be NULL. */
+ * be NULL. If lanes->lanes.load_N is not NULL, net->load_N must be given, else it must be NULL. */
 void hf_near_load(const hf_near *near, hf_near_lanes *lanes, int lane, const hf_built_net *net);
 
 /* hf_near_look measures the forces in all lanes. hf_near_step takes a chord step in all lanes. */

@@ -130,7 +130,7 @@ static void check_load_cases(const hf_built_settings *b, hf_config_faults *f)
 static void check_expansions(const hf_case *c, hf_config_faults *f)
 {
     const hf_built_settings *b = &c->built;
-    if (c->has_tolerance && c->tolerance.sigma_temperature_K > 0) return;
+    if (c->has_tolerance && hf_tolerance_is_warm(&c->tolerance)) return;
     for (int i = 0; i < b->n_load_case; i++)
         if (has_temperature(&b->load_case[i])) return;
     for (int i = 0; i < b->n_cable; i++)
@@ -179,6 +179,22 @@ static void check_truss_heat(const hf_case *c, hf_config_faults *f)
     }
 }
 
+/* Reports errors of load cases that no sample has. Samples are only solved in the load cases of rows with a share. */
+static void check_load_errors(const hf_case *c, hf_config_faults *f)
+{
+    const struct {
+        const char *key;
+        double sigma;
+    } of[] = {{"tolerance.sigma_load_case_temperature_K", c->tolerance.sigma_load_case_temperature_K},
+              {"tolerance.sigma_gravity_ratio", c->tolerance.sigma_gravity_ratio},
+              {"tolerance.sigma_force_ratio", c->tolerance.sigma_force_ratio}};
+    for (int i = 0; i < c->n_requirement; i++)
+        if (!isnan(c->requirement[i].share) && strcmp(c->requirement[i].load_case, "nominal") != 0) return;
+    for (size_t k = 0; k < sizeof of / sizeof *of; k++)
+        if (of[k].sigma > 0)
+            hf_config_fault_of(f, of[k].key, "has no effect: no row of `requirements` has a share and a load_case");
+}
+
 static void check_tolerance(const hf_case *c, hf_config_faults *f)
 {
     const hf_tolerance_settings *t = &c->tolerance;
@@ -187,12 +203,17 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
         knows_expansion |= !isnan(c->built.cable[i].expansion_per_K);
     check_require(c, f);
     check_truss_heat(c, f);
-    if (t->sigma_cut_m + t->sigma_cut_ratio + t->sigma_EA_ratio + t->sigma_support_m + t->sigma_temperature_K == 0 &&
+    check_load_errors(c, f);
+    if (t->sigma_cut_m + t->sigma_cut_ratio + t->sigma_EA_ratio + t->sigma_support_m + t->sigma_temperature_K +
+                t->sigma_load_case_temperature_K + t->sigma_gravity_ratio + t->sigma_force_ratio ==
+            0 &&
         t->n_truss == 0)
         hf_config_fault_of(f, "tolerance.sigma_cut_m",
                            "must be above 0, or another sigma: without errors all is nominal");
-    if (t->sigma_temperature_K > 0 && !knows_expansion)
-        hf_config_fault_of(f, "tolerance.sigma_temperature_K", "needs expansion_per_K in a row of `cables`");
+    if (hf_tolerance_is_warm(t) && !knows_expansion)
+        hf_config_fault_of(
+            f, t->sigma_temperature_K > 0 ? "tolerance.sigma_temperature_K" : "tolerance.sigma_load_case_temperature_K",
+            "needs expansion_per_K in a row of `cables`");
     if (t->required_yield > 0 && t->n_require == 0)
         hf_config_fault_of(f, "tolerance.required_yield",
                            "needs rows of tolerance.require, which say what a net must keep");

@@ -83,6 +83,7 @@ static hf_status heat_cables(const maker *q, int row)
         if (isnan(expansion) && n_unknown++ == 0) unknown = e;
         if (fabs(expansion * load_case->rise_K[e]) > LARGEST_STRAIN && n_wild++ == 0) wild = e;
     }
+    load_case->has_temperature = true;
     if (n == 0) return HF_BAD_CASE;
     if (n_wild)
         hf_error(

@@ -106,15 +106,18 @@ static hf_status keep_shape(const hf_problem *p, hf_load_case_stage *c, hf_store
     return hf_store_built(store, s->name, m, &c->workspace, &p->carrier, truss, messages);
 }
 
-hf_status hf_load_case_stage_rest(const hf_problem *p, double *move_m)
+hf_status hf_load_case_stage_rest(const hf_problem *p, double *move_m, double *by_weight_m)
 {
     void *block;
     double *force;
     HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(force, HF_TRUSS_DOF * (size_t)p->carrier.truss.n_node)));
     hf_status status = HF_OK;
     for (int k = 0; k < p->load_cases.n && status == HF_OK; k++) {
-        const hf_frame_load own = load_of_truss(&p->carrier, &p->load_cases.load_case[k], force);
-        status = move_attachments(&p->carrier, &own, move_m + 3 * (size_t)k * (size_t)p->carrier.n_attachment);
+        hf_frame_load own = load_of_truss(&p->carrier, &p->load_cases.load_case[k], force);
+        size_t at = 3 * (size_t)k * (size_t)p->carrier.n_attachment;
+        status = move_attachments(&p->carrier, &own, move_m + at);
+        own.temperature_K = NULL;
+        if (status == HF_OK && by_weight_m) status = move_attachments(&p->carrier, &own, by_weight_m + at);
     }
     hf_arena_free_block(block);
     return status;

@@ -21,8 +21,9 @@ hf_status hf_load_case_stage_take(const hf_problem *problem, const hf_workspace 
                                   hf_messages *messages);
 
 /* Sets move_m [n_load_case][3 n_attachment] to the displacements of the attachments in each load case by the truss
- * without the net, m. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_load_case_stage_rest(const hf_problem *problem, double *move_m);
+ * without the net, m. by_weight_m receives the part of them that its weight causes; it may be NULL. Returns HF_OK or
+ * HF_NO_MEMORY. */
+hf_status hf_load_case_stage_rest(const hf_problem *problem, double *move_m, double *by_weight_m);
 
 /* Sets move_m_per_K [n_truss][3 n_attachment] to the same displacements for each row of tolerance.truss, caused by a
  * rise of its part by 1 K, m/K. Returns HF_OK or HF_NO_MEMORY. */

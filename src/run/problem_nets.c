@@ -14,10 +14,10 @@
 
 struct hf_problem_nets {
     hf_built_nets nets;
-    hf_material material;            /* expansion of the cables of samples */
-    double *attachment_move_m;       /* [n_load_case][3 n_attachment] m */
-    double *truss_move_m_per_K;      /* [n_truss][3 n_attachment] m/K, of samples */
-    hf_tolerance_settings tolerance; /* of the samples of a search under requirements */
+    hf_material material;                    /* expansion of the cables of samples */
+    double *attachment_move_m, *by_weight_m; /* [n_load_case][3 n_attachment] m (hf_built_rest) */
+    double *truss_move_m_per_K;              /* [n_truss][3 n_attachment] m/K, of samples */
+    hf_tolerance_settings tolerance;         /* of the samples of a search under requirements */
     hf_required required;
     hf_material masses; /* mass of the cables, if a requirement needs it */
     hf_built_constraints constraints;
@@ -41,7 +41,7 @@ static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_
     struct hf_problem_nets *q = p->nets;
     const hf_case *c = &p->settings;
     const hf_tolerance_settings *tolerance = &c->tolerance;
-    bool is_on_truss = has_load_cases && p->model.n_attachment > 0, is_warm = c->tolerance.sigma_temperature_K > 0;
+    bool is_on_truss = has_load_cases && p->model.n_attachment > 0, is_warm = hf_tolerance_is_warm(&c->tolerance);
     if (c->n_requirement > 0) {
         q->tolerance = c->tolerance;
         q->tolerance.seed ^= SEED_OF_SEARCH;
@@ -51,15 +51,15 @@ static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_
     if (n_sample > 0 && is_warm) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
     hf_built_heat heat = {is_warm ? q->material.expansion_per_K : NULL,
                           c->tolerance.n_truss ? q->truss_move_m_per_K : NULL};
-    hf_status status = is_on_truss ? hf_load_case_stage_rest(p, q->attachment_move_m) : HF_OK;
+    hf_status status = is_on_truss ? hf_load_case_stage_rest(p, q->attachment_move_m, q->by_weight_m) : HF_OK;
     if (status == HF_OK && n_sample > 0 && c->tolerance.n_truss > 0)
         status = hf_load_case_stage_rest_by_heat(p, q->truss_move_m_per_K);
     if (status != HF_OK)
         return hf_error(messages, status, "hifdm cannot solve the truss of the as-built nets in the objectives: %s",
                         hf_status_text(status));
+    const hf_built_rest rest = {q->attachment_move_m, q->by_weight_m}, none = {NULL, NULL};
     hf_built_nets_make(&p->scene, &p->model, &c->form, has_load_cases ? &p->load_cases : NULL,
-                       is_on_truss ? q->attachment_move_m : NULL, n_sample > 0 ? tolerance : NULL, &heat, n_sample,
-                       &q->nets);
+                       is_on_truss ? &rest : &none, n_sample > 0 ? tolerance : NULL, &heat, n_sample, &q->nets);
     return HF_OK;
 }
 
@@ -107,15 +107,17 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
     bool has_load_cases = is_over_load_cases(o->term, o->n_term) || is_over_load_cases(o->front, o->n_front);
     int n_sample = count_samples(p);
     size_t n = 3 * (size_t)p->model.n_attachment;
-    double *move_m, *by_heat;
+    double *move_m, *by_weight, *by_heat;
     void *block; /* p->nets is the first item */
     for (int i = 0; i < p->settings.n_requirement; i++)
         has_load_cases |= strcmp(p->settings.requirement[i].load_case, "nominal") != 0;
     if (!has_load_cases && n_sample == 0 && !is_constrained) return HF_OK;
     if (HF_ARENA_ARRAYS(&block, HF_ARRAY(p->nets, 1), HF_ARRAY(move_m, (size_t)p->load_cases.n * n),
+                        HF_ARRAY(by_weight, (size_t)p->load_cases.n * n),
                         HF_ARRAY(by_heat, (size_t)p->settings.tolerance.n_truss * n)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the as-built nets in the objectives");
     p->nets->attachment_move_m = move_m;
+    p->nets->by_weight_m = by_weight;
     p->nets->truss_move_m_per_K = by_heat;
     HF_TRY(make_nets(p, has_load_cases, n_sample, messages));
     return is_constrained ? make_constraints(p, messages) : HF_OK;

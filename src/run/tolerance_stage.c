@@ -78,13 +78,42 @@ static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_m
     const hf_scene *s = &p->scene;
     char place[HF_LOCATION_SIZE];
     int n = 0, first = 0;
-    for (int e = 0; e < s->n_cable && p->settings.tolerance.sigma_temperature_K > 0; e++)
+    const char *key =
+        p->settings.tolerance.sigma_temperature_K > 0 ? "sigma_temperature_K" : "sigma_load_case_temperature_K";
+    for (int e = 0; e < s->n_cable && hf_tolerance_is_warm(&p->settings.tolerance); e++)
         if (isnan(t->expansion_per_K[e]) && n++ == 0) first = e;
     if (n == 0) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
                     "%s: %d cable%s no expansion_per_K, such as '%s'. Add this value to a row of the list `cables`",
-                    hf_config_place(&p->settings, place, "tolerance.sigma_temperature_K"), n,
-                    n == 1 ? " has" : "s have", s->cable_id[first]);
+                    hf_config_place(&p->settings, place, "tolerance.%s", key), n, n == 1 ? " has" : "s have",
+                    s->cable_id[first]);
+}
+
+/* Checks that each error of load cases has a load case that prescribes what it is an error of. */
+static hf_status check_load_errors(const hf_problem *p, hf_messages *messages)
+{
+    const hf_tolerance_settings *t = &p->settings.tolerance;
+    const struct {
+        const char *key, *what, *advice;
+        double sigma;
+    } of[HF_LOAD_ERROR_N] = {{"sigma_load_case_temperature_K", "a temperature of the cables", "temperature_K",
+                              t->sigma_load_case_temperature_K},
+                             {"sigma_gravity_ratio", "gravity", "gravity_m_per_s2", t->sigma_gravity_ratio},
+                             {"sigma_force_ratio", "forces", "force_N", t->sigma_force_ratio}};
+    char place[HF_LOCATION_SIZE];
+    hf_status status = HF_OK;
+    for (int kind = 0; kind < HF_LOAD_ERROR_N; kind++) {
+        bool has = !(of[kind].sigma > 0);
+        for (int k = 0; k < p->load_cases.n && !has; k++)
+            has = hf_load_case_may_err(&p->load_cases.load_case[k], p->scene.n_node, (hf_load_error)kind);
+        if (!has)
+            status = hf_error(
+                messages, HF_BAD_CASE,
+                "%s: no load case has %s, so this error has no effect. Add %s to a row of `load_cases`, or "
+                "remove this key",
+                hf_config_place(&p->settings, place, "tolerance.%s", of[kind].key), of[kind].what, of[kind].advice);
+    }
+    return status;
 }
 
 /* Checks that the parts of the truss in tolerance.truss exist and have an expansion. Returns HF_OK, or the status of
@@ -114,12 +143,14 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
     for (int e = 0; e < s->n_cable; e++) {
         double length = hf_scene_length_at_target(s, e), by_cut = LARGEST_NUMBER * t->sigma_cut_m / length;
         double by_heat = 0;
-        if (t->sigma_temperature_K > 0 && !isnan(material->expansion_per_K[e])) /* check_expansion reports the others */
-            by_heat = LARGEST_NUMBER * t->sigma_temperature_K * fabs(material->expansion_per_K[e]);
+        if (hf_tolerance_is_warm(t) && !isnan(material->expansion_per_K[e])) /* check_expansion reports the others */
+            by_heat = LARGEST_NUMBER * (t->sigma_temperature_K + t->sigma_load_case_temperature_K) *
+                      fabs(material->expansion_per_K[e]);
         if (by_cut + by_ratio + by_heat < 0.5) continue;
         const char *key = by_cut >= by_ratio && by_cut >= by_heat ? "tolerance.sigma_cut_m"
                           : by_ratio >= by_heat                   ? "tolerance.sigma_cut_ratio"
-                                                                  : "tolerance.sigma_temperature_K";
+                          : t->sigma_temperature_K > 0            ? "tolerance.sigma_temperature_K"
+                                                                  : "tolerance.sigma_load_case_temperature_K";
         return hf_error(messages, HF_BAD_CASE,
                         "%s: cable '%s' is %.3g m long. At %d standard deviations, errors of cutting and temperature "
                         "change the cable length by the fraction %.3g, but the maximum is 0.5. Use smaller errors",
@@ -132,9 +163,15 @@ static hf_status check_cuts(const hf_problem *p, const hf_material *material, hf
 /* Writes the location of the section for messages: that of the first sigma in the case. Returns place. */
 static const char *place_section(const hf_case *c, char place[HF_LOCATION_SIZE])
 {
-    static const char *const key[] = {"tolerance.sigma_cut_m",         "tolerance.sigma_cut_ratio",
-                                      "tolerance.sigma_EA_ratio",      "tolerance.sigma_support_m",
-                                      "tolerance.sigma_temperature_K", "tolerance.truss.0.part"};
+    static const char *const key[] = {"tolerance.sigma_cut_m",
+                                      "tolerance.sigma_cut_ratio",
+                                      "tolerance.sigma_EA_ratio",
+                                      "tolerance.sigma_support_m",
+                                      "tolerance.sigma_temperature_K",
+                                      "tolerance.truss.0.part",
+                                      "tolerance.sigma_load_case_temperature_K",
+                                      "tolerance.sigma_gravity_ratio",
+                                      "tolerance.sigma_force_ratio"};
     for (size_t i = 0; i < sizeof key / sizeof *key; i++)
         if (hf_config_location(c, key[i], place, HF_LOCATION_SIZE)) break;
     return place;
@@ -169,7 +206,7 @@ hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_mes
                         p->settings.path);
     hf_material material;
     char place[HF_LOCATION_SIZE];
-    hf_status status = make_material(p, &material, messages), other[5] = {HF_OK};
+    hf_status status = make_material(p, &material, messages), other[6] = {HF_OK};
     if (status != HF_NO_MEMORY) other[2] = check_cuts(p, &material, messages);
     hf_material_free(&material);
     place_section(&p->settings, place);
@@ -177,7 +214,8 @@ hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_mes
     other[1] = check_measures(p, messages);
     other[3] = check_struts(p, messages);
     other[4] = check_truss_heat(p, messages);
-    for (int i = 0; i < 5 && status == HF_OK; i++)
+    other[5] = check_load_errors(p, messages);
+    for (int i = 0; i < 6 && status == HF_OK; i++)
         status = other[i];
     return status;
 }
@@ -221,6 +259,7 @@ typedef struct {
     hf_montecarlo montecarlo;
     hf_gain_beam beam; /* of the net at the target positions, used for all shapes */
     hf_samples samples;
+    void *rest_block; /* displacements of the attachments in load cases */
     double begin_s;
 } job;
 
@@ -228,6 +267,7 @@ static void job_free(job *j)
 {
     hf_samples_close(&j->samples);
     hf_montecarlo_free(&j->montecarlo);
+    hf_arena_free_block(j->rest_block);
     hf_built_free(&j->built);
 }
 
@@ -304,15 +344,13 @@ static hf_status open_samples(job *j, const char *beside, hf_messages *messages)
 static hf_status require(job *j, hf_messages *messages)
 {
     const hf_problem *p = j->problem;
-    double *move_m;
-    void *block;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(move_m, 3 * (size_t)p->load_cases.n * (size_t)p->model.n_attachment)));
-    hf_status status = p->settings.has_truss ? hf_load_case_stage_rest(p, move_m) : HF_OK;
-    if (status == HF_OK)
-        status = hf_montecarlo_require(&j->montecarlo, &j->requirements->required,
-                                       p->settings.has_truss ? move_m : NULL, messages);
-    hf_arena_free_block(block);
-    return status;
+    size_t n = 3 * (size_t)p->load_cases.n * (size_t)p->model.n_attachment;
+    double *move_m, *by_weight_m;
+    HF_TRY(HF_ARENA_ARRAYS(&j->rest_block, HF_ARRAY(move_m, n), HF_ARRAY(by_weight_m, n)));
+    if (p->settings.has_truss) HF_TRY(hf_load_case_stage_rest(p, move_m, by_weight_m));
+    const hf_built_rest rest = {move_m, by_weight_m}, none = {NULL, NULL};
+    return hf_montecarlo_require(&j->montecarlo, &j->requirements->required, p->settings.has_truss ? &rest : &none,
+                                 messages);
 }
 
 static hf_status open_montecarlo(job *j, hf_messages *messages)
@@ -327,8 +365,7 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
     if (status == HF_OK) {
         status = HF_ARENA_ARRAYS(&block, HF_ARRAY(by_heat, n_move));
         if (status == HF_OK) status = hf_load_case_stage_rest_by_heat(p, by_heat);
-        hf_built_heat heat = {t->sigma_temperature_K > 0 ? material.expansion_per_K : NULL,
-                              t->n_truss ? by_heat : NULL};
+        hf_built_heat heat = {hf_tolerance_is_warm(t) ? material.expansion_per_K : NULL, t->n_truss ? by_heat : NULL};
         if (status == HF_OK)
             status = hf_montecarlo_create(t, &j->built, &p->surface, &p->facets, &heat, j->request->control.threads,
                                           &j->montecarlo);

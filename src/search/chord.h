@@ -75,6 +75,7 @@ typedef struct hf_chord {
 /* The scratch of one thread. */
 typedef struct {
     HF_CHORD_LANES_FIELDS(HF_ARENA_MEMBER)
+    double *load_N; /* [3][n_node][HF_LANES] loads of each lane, borrowed; NULL: all lanes have those of the model */
     hf_arena arena;
 } hf_chord_lanes;
 

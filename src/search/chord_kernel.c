@@ -81,7 +81,8 @@ INLINE void sum_force(const hf_chord *chord, const hf_chord_lanes *l, int place,
                              *end = chord->incidence + chord->incidence_start[place + 1];
     vec d[3];
     foreach (c, 3)
-        f[c] = splat(m->load_N ? m->load_N[c * m->n_node + row] : 0);
+        f[c] = l->load_N ? *lanes_of(l->load_N, c * m->n_node + row, p)
+                         : splat(m->load_N ? m->load_N[c * m->n_node + row] : 0);
     for (; i < end; i++) {
         vec q = *lanes_of(l->variable, i->slot, p);
         difference(l->x_m, m->n_node, row, i->other, p, d);

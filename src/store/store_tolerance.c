@@ -14,27 +14,30 @@
 typedef struct {
     hf_hdf5_array array;
     int column; /* index into a row */
+    /* If `loaded` is not NULL, the column is an error of a load case, which is drawn anew. */
+    const hf_built_loaded *loaded;
+    hf_load_error kind;
 } sample_column;
 
 static int list_columns(const hf_montecarlo *t, sample_column of[HF_TOLERANCE_COLUMNS])
 {
     int n = 0;
     of[n++] = (sample_column){{"status", HF_KIND_INT, 1, {0}, "", "0: has a shape; else a status of the program"},
-                              HF_TOLERANCE_STATUS};
+                              .column = HF_TOLERANCE_STATUS};
     of[n++] = (sample_column){{"first_order_psi_m", HF_KIND_REAL, 1, {0}, "m", "psi of the same errors to first order"},
-                              HF_TOLERANCE_LINEAR_PSI};
+                              .column = HF_TOLERANCE_LINEAR_PSI};
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
         const char *name = hf_tolerance_measure_word[k], *units = hf_tolerance_measure_unit[k];
         const hf_hdf5_array array = {name, HF_KIND_REAL, 1, {0}, units, hf_tolerance_measure_help[k]};
         if (hf_montecarlo_measures(t->surface, t->facets, (hf_tolerance_measure)k))
-            of[n++] = (sample_column){array, HF_TOLERANCE_FIRST + k};
+            of[n++] = (sample_column){.array = array, .column = HF_TOLERANCE_FIRST + k};
     }
     return n;
 }
 
 /* Writes the columns of all samples into a new group. */
-static hf_status write_columns(hf_hdf5 *io, const char *path, int n_column, sample_column *column,
-                               const hf_statistics_rows *rows)
+static hf_status write_columns(hf_hdf5 *io, const hf_montecarlo *t, const char *path, int n_column,
+                               sample_column *column, const hf_statistics_rows *rows)
 {
     double *row, *value;
     void *block;
@@ -48,8 +51,10 @@ static hf_status write_columns(hf_hdf5 *io, const char *path, int n_column, samp
         int n = rows->n - first < BLOCK ? (int)(rows->n - first) : BLOCK;
         status = rows->read(rows->context, first, n, row);
         for (int k = 0; k < n_column && status == HF_OK; k++) {
+            const sample_column *c = &column[k];
             for (int i = 0; i < n; i++)
-                value[i] = row[i * rows->n_value + column[k].column];
+                value[i] = c->loaded ? hf_built_loaded_error(c->loaded, &t->errors, first + i, c->kind)
+                                     : row[i * rows->n_value + c->column];
             column[k].array.dims[0] = (hsize_t)n;
             column[k].array.kind = HF_KIND_REAL; /* HDF5 converts integers */
             hf_hdf5_write_rows(io, group, &column[k].array, (hsize_t)first, value);
@@ -65,13 +70,29 @@ static hf_status write_samples(hf_hdf5 *io, const hf_montecarlo *t, const hf_sta
 {
     sample_column column[HF_TOLERANCE_COLUMNS];
     int n_column = list_columns(t, column);
-    return write_columns(io, "/tolerance/sample", n_column, column, rows);
+    return write_columns(io, t, "/tolerance/sample", n_column, column, rows);
+}
+
+/* Lists the errors that samples have of a load case. Returns their number. */
+static int list_load_errors(const hf_montecarlo *t, int state, sample_column of[HF_LOAD_ERROR_N])
+{
+#define ARRAY(name, word, units, description) {word, HF_KIND_REAL, 1, {0}, units, description},
+    static const hf_hdf5_array array[HF_LOAD_ERROR_N] = {HF_LOAD_ERRORS(ARRAY)};
+#undef ARRAY
+    int n = 0;
+    for (int k = 0; k < t->n_load_case; k++)
+        for (int kind = 0; kind < HF_LOAD_ERROR_N && t->load_case[k].state == state; kind++) {
+            const hf_built_loaded *net = &t->load_case[k].net;
+            if (hf_built_loaded_errs(net, &t->errors, (hf_load_error)kind))
+                of[n++] = (sample_column){.array = array[kind], .loaded = net, .kind = (hf_load_error)kind};
+        }
+    return n;
 }
 
 /* The columns of a load case. */
 typedef struct {
     int n;
-    sample_column column[2 * HF_REQUIRED_COLUMNS];
+    sample_column column[2 * HF_REQUIRED_COLUMNS + HF_LOAD_ERROR_N];
     char name[2 * HF_REQUIRED_COLUMNS][HF_REQUIRED_NAME_SIZE + 8];
 } required_columns;
 
@@ -94,7 +115,8 @@ static void list_required(const hf_required *q, int state, required_columns *to)
                                "figure of each sample in this load case"};
         if (is_item)
             array = (hf_hdf5_array){array.name, HF_KIND_INT, 1, {0}, "", "cable with this tension; -1: no shape"};
-        to->column[to->n++] = (sample_column){array, (int)hf_montecarlo_value_at(q, state, is_item) + k / 2};
+        to->column[to->n++] =
+            (sample_column){.array = array, .column = (int)hf_montecarlo_value_at(q, state, is_item) + k / 2};
     }
 }
 
@@ -110,8 +132,9 @@ static hf_status write_required(hf_hdf5 *io, const hf_montecarlo *t, const hf_st
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/tolerance/load_case"));
     for (int state = 0; state < q->n_state && status == HF_OK; state++) {
         list_required(q, state, c);
+        c->n += list_load_errors(t, state, c->column + c->n);
         snprintf(path, sizeof path, "/tolerance/load_case/%s", hf_required_state_name(q, state));
-        if (c->n > 0) status = write_columns(io, path, c->n, c->column, rows);
+        if (c->n > 0) status = write_columns(io, t, path, c->n, c->column, rows);
     }
     free(c);
     return status;

@@ -416,13 +416,15 @@ END_TEST
 
 static const char *sampled_case(const char *sampling)
 {
-    return file_with("c.yaml", formatted(BUILT_SCENE LOADS
-                                         "tolerance: {sigma_cut_m: 1e-4, sigma_support_m: 2e-5, sigma_EA_ratio: 0.01, "
-                                         "samples: 600, sampling: %s}\n" ROWS
-                                         "  - {figure: tension, within: [0.1, 90], load_case: all, share: 0.9}\n"
-                                         "  - {figure: psi, at_most: 0.04, load_case: all, share: 0.5}\n"
-                                         "  - {figure: slack_cables, at_most: 0, share: 0}\n",
-                                         sampling));
+    return file_with(
+        "c.yaml",
+        formatted(BUILT_SCENE LOADS
+                  "tolerance: {sigma_cut_m: 1e-4, sigma_support_m: 2e-5, sigma_EA_ratio: 0.01, "
+                  "sigma_force_ratio: 0.1, sigma_load_case_temperature_K: 2, samples: 600, sampling: %s}\n" ROWS
+                  "  - {figure: tension, within: [0.1, 90], load_case: all, share: 0.9}\n"
+                  "  - {figure: psi, at_most: 0.04, load_case: all, share: 0.5}\n"
+                  "  - {figure: slack_cables, at_most: 0, share: 0}\n",
+                  sampling));
 }
 
 static void demand_same(const char *path, const char *whole)
@@ -451,6 +453,25 @@ START_TEST(threads_and_tasks_change_nothing)
     HIFDM(0, "tolerance", c, "-o", path, "--tasks", "3", "--quiet");
     demand_same(path, whole);
     SHELL(0, "test \"$(ls \"$1\"*)\" = \"$1\"", path); /* no journals are left */
+}
+END_TEST
+
+/* Errors of load cases have random numbers of their own: all other errors keep their bits, and so do load cases without
+ * such an error. */
+START_TEST(errors_of_load_cases_change_nothing_else)
+{
+    const char *c = sampled_case(_i ? "sobol" : "random"), *whole = temp("a.h5"), *path = temp("b.h5");
+    HIFDM(0, "tolerance", c, "-o", whole, "--quiet");
+    HIFDM(0, "tolerance", c, "-o", path, "--quiet", "--set", "tolerance.sigma_load_case_temperature_K=0");
+    EXPECT(path, whole, "--",
+           "all(a['tolerance/sample'][k][:].tobytes() == b['tolerance/sample'][k][:].tobytes() for k in "
+           "b['tolerance/sample'])",
+           "a['tolerance/load_case/windy/psi'][:].tobytes() == b['tolerance/load_case/windy/psi'][:].tobytes()",
+           "(a['tolerance/load_case/cold/psi'][:] != b['tolerance/load_case/cold/psi'][:]).all()",
+           "'temperature_error_K' not in a['tolerance/load_case/cold']",
+           "sorted(k for k in b['tolerance/load_case/windy'] if 'error' in k) == ['force_error_ratio']",
+           "abs(b['tolerance/load_case/cold/temperature_error_K'][:].std() - 2) < 0.2",
+           "abs(b['tolerance/load_case/windy/force_error_ratio'][:].std() - 0.1) < 0.01");
 }
 END_TEST
 
@@ -541,6 +562,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, a_bound_in_another_unit_is_doubted);
     tcase_add_test(tests, a_load_case_without_a_shape_fails_its_rows);
     tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
+    tcase_add_loop_test(tests, errors_of_load_cases_change_nothing_else, 0, 2);
     tcase_add_test(tests, killed_runs_resume);
     tcase_add_test(tests, samples_of_other_requirements_are_not_used);
     tcase_add_loop_test(tests, a_summary_below_verdicts_is_short, 0, 2);

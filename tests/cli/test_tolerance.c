@@ -246,6 +246,11 @@ START_TEST(a_report_has_the_samples)
 }
 END_TEST
 
+/* One load case, in which samples are solved. */
+#define IN_LOAD_CASE(row)                                                                                              \
+    "load_cases: [{name: blown, " row "}]\n"                                                                           \
+    "requirements: [{figure: psi, at_most: 1, load_case: all, share: 0.5}]\n"
+
 START_TEST(faults_are_named)
 {
     static const char *const fault[][2] = {
@@ -288,6 +293,24 @@ START_TEST(faults_are_named)
         {"  sigma_cut_m: 0.1\n", "6:16: tolerance.sigma_cut_m: cable '"},
         {"  sigma_temperature_K: 700\ncables: [{expansion_per_K: 1e-3}]\n",
          "6:24: tolerance.sigma_temperature_K: cable '"},
+        {"  sigma_load_case_temperature_K: 5\n",
+         "6:34: tolerance.sigma_load_case_temperature_K: needs expansion_per_K in a row of `cables`"},
+        {"  sigma_load_case_temperature_K: 5\ncables: [{set: boundary, expansion_per_K: 1e-6}]\n" IN_LOAD_CASE(
+             "support_displacement_m: [0, 0, 1e-3]"),
+         "6:34: tolerance.sigma_load_case_temperature_K: 38 cables have no expansion_per_K, such as '"},
+        {"  sigma_load_case_temperature_K: 5\ncables: [{expansion_per_K: 1e-6}]\n" IN_LOAD_CASE(
+             "support_displacement_m: [0, 0, 1e-3]"),
+         "6:34: tolerance.sigma_load_case_temperature_K: no load case has a temperature of the cables, so this error "
+         "has "
+         "no effect. Add temperature_K to a row of `load_cases`, or remove this key"},
+        {"  sigma_gravity_ratio: 0.1\n" IN_LOAD_CASE("force_N: [0, 0, 0.1]"),
+         "6:24: tolerance.sigma_gravity_ratio: no load case has gravity, so this error has no effect. Add "
+         "gravity_m_per_s2 to a row"},
+        {"  sigma_force_ratio: 0.1\n" IN_LOAD_CASE("force_N: [0, 0, 0]"),
+         "6:22: tolerance.sigma_force_ratio: no load case has forces, so this error has no effect. Add force_N to a "
+         "row"},
+        {"  sigma_force_ratio: 0.1\nload_cases: [{name: blown, force_N: [0, 0, 0.1]}]\n",
+         "6:22: tolerance.sigma_force_ratio: has no effect: no row of `requirements` has a share and a load_case"},
         {"  sigma_temperature_K: 30\n  sigma_cut_ratio: 0.028\ncables: [{expansion_per_K: 1e-3}]\n",
          "6:24: tolerance.sigma_temperature_K: cable '"},
     };

@@ -4,12 +4,14 @@ shapes in its file. Usage: requirements_oracle.py RESULT.h5
 METHOD section 14 has the equations. Rows with a share come from /tolerance/load_case: margin, yield with the interval
 of Clopper and Pearson, quantile, worst sample. Other rows come from the shapes and tensions of the result and of its
 load cases. The best fit, the facets (triangles of the front cables), their converged quadrature and the physical optics
-of a point feed at the focus (METHOD section 13) are the oracle's own."""
+of a point feed at the focus (METHOD section 13) are the oracle's own. If load cases have errors of their own, the
+oracle also draws all errors of the samples anew and solves their nets."""
 import sys
 
 import figures
 import h5py
 import numpy as np
+import tolerance_oracle
 import yaml
 from scipy.optimize import least_squares, minimize
 from scipy.stats import beta
@@ -287,10 +289,67 @@ def judge_nominal(result, row, said):
     return least, off
 
 
+# ---- samples of load cases with errors ----
+
+# key of `tolerance`, kind of random numbers, data set
+LOAD_ERROR = (("sigma_load_case_temperature_K", 12, "temperature_error_K"),
+              ("sigma_gravity_ratio", 13, "gravity_error_ratio"), ("sigma_force_ratio", 14, "force_error_ratio"))
+
+
+def load_of(result, name, cut):
+    """Returns the rise of temperature, the weights and the forces of a load case; None where it has none."""
+    rise = weight = force = None
+    for row in result.case["load_cases"]:
+        if row["name"] != name:
+            continue
+        rise = row.get("temperature_K", rise)
+        if "gravity_m_per_s2" in row:
+            along = np.array(row.get("direction", [0, 0, -1]), float)
+            half = result.mass_per_length() * cut / 2 * row["gravity_m_per_s2"]
+            weight = np.zeros((len(result.role), 3))
+            for end in (0, 1):
+                np.add.at(weight, result.end[:, end], half[:, None] * along / np.linalg.norm(along))
+        if "force_N" in row:
+            assert row["role"] == "inner"
+            force = np.where((result.role == 1)[:, None], row["force_N"], 0)
+    return rise, weight, force
+
+
+def draw_samples(result):
+    """Demands the errors and the minimum tensions of samples in load cases."""
+    errors = {key: float(value) for key, value in result.case["tolerance"].items()}
+    of, n_sample = result.file["tolerance/load_case"], int(errors["samples"])
+    assert set(errors) <= {key for key, _, _ in LOAD_ERROR} | {"sigma_cut_m", "samples"}, "other errors"
+    alpha, worst = float(result.case["cables"][0]["expansion_per_K"]), 0.0
+    length, tension = result.stage["length_m"][:], result.stage["tension_N"][:]
+    cut = length / (1 + tension / result.EA)
+    for k, name in enumerate(result.states):
+        load, start = load_of(result, name, cut), result.shape(name)[0]
+        has = [LOAD_ERROR[i][2] for i in range(3) if load[i] is not None and LOAD_ERROR[i][0] in errors]
+        assert set(has) == {d for d in of[name] if "error" in d}, name
+        for i in range(n_sample):
+            own = np.array([tolerance_oracle.number(1, i, 0, e) for e in range(len(cut))])
+            warmer, heavier, stronger = (
+                0 if part is None or key not in errors else errors[key] * tolerance_oracle.number(1, i, kind, k - 1)
+                for part, (key, kind, _) in zip(load, LOAD_ERROR))
+            for d, value in zip((d for _, _, d in LOAD_ERROR), (warmer, heavier, stronger)):
+                assert d not in has or abs(of[name][d][i] - value) < 1e-12 * max(1, abs(value)), (name, d, i)
+            now = (cut + errors["sigma_cut_m"] * own) * (1 + alpha * ((load[0] or 0) + warmer))
+            push = sum(part * (1 + error) for part, error in ((load[1], heavier), (load[2], stronger))
+                       if part is not None)
+            t = tolerance_oracle.solve(start.copy(), result.role != 0, result.end, now, result.EA, push)[1]
+            worst = max(worst, abs(t.min() - of[name]["tension_min"][i]))
+    figures.worst(worst, 1e-7, "minimum tensions of samples in load cases with errors, N")
+    assert worst < 1e-7, worst
+    print(f"{n_sample} samples in {len(result.states)} load cases: minimum tensions differ by {worst:.1e} N")
+
+
 def main(path):
     worst, count = 0.0, {}
     with h5py.File(path) as file:
         result, of = Result(file), file["requirements"]
+        if any(key in result.case.get("tolerance", {}) for key, _, _ in LOAD_ERROR):
+            draw_samples(result)
         table = {key: words(of[key]) if of[key].dtype.kind in "OS" else of[key][:].tolist() for key in of}
         for k in range(len(table["figure"])):
             said = {key: table[key][k] for key in table}

@@ -2,8 +2,8 @@
 slack cables must be those of the result. Usage: tolerance_oracle.py RESULT.h5
 
 METHOD section 12 describes the stream of an error: SplitMix64 scattered by (seed, sample, kind, item). The net has the
-minimum energy of its cables, sum EA/(2 l0) max(l - l0, 0)^2. Newton's method with a shrinking ridge and a line search
-finds it."""
+minimum energy of its cables, sum EA/(2 l0) max(l - l0, 0)^2, less the work of its loads.
+Newton's method with a shrinking ridge and a line search finds it."""
 import sys
 
 import figures
@@ -52,19 +52,20 @@ def slope_and_matrix(x, end, cut, ea):
     return slope, matrix.reshape(3 * len(x), 3 * len(x)), tension
 
 
-def solve(x, free, end, cut, ea):
+def solve(x, free, end, cut, ea, load=0):
     dof = (3 * np.flatnonzero(free)[:, None] + np.arange(3)).ravel()
     for _ in range(200):
         slope, matrix, tension = slope_and_matrix(x, end, cut, ea)
-        g = slope.ravel()[dof]
+        g = (slope - load).ravel()[dof]
         if np.abs(g).max() < 1e-10 * tension.max():
             return x, tension
         ridge = 1e-9 * ea.max() + np.abs(g).max()  # vanishes at the end, up to what loose nodes need
         step = np.zeros(x.size)
         step[dof] = np.linalg.solve(matrix[np.ix_(dof, dof)] + ridge * 1e-3 * np.eye(len(dof)), -g)
-        step, size, now = step.reshape(x.shape), 1.0, energy(x, end, cut, ea)
+        step, size, now = step.reshape(x.shape), 1.0, energy(x, end, cut, ea) - np.sum(load * x)
         gain = g @ step.ravel()[dof]
-        while -gain > 1e-12 * now and energy(x + size * step, end, cut, ea) > now + 1e-4 * size * gain:
+        while (-gain > 1e-12 * abs(now) and energy(x + size * step, end, cut, ea) - np.sum(load * (x + size * step))
+               > now + 1e-4 * size * gain):
             size /= 2  # less than that is rounding
         x = x + size * step
     raise SystemExit("the oracle does not converge")
@@ -113,4 +114,5 @@ def main(path):
     assert worst < 1e-9 and n_slack > 0 and n_psi > 40
 
 
-main(sys.argv[1])
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -83,11 +83,11 @@ static void close_built(built_bench *b)
     hf_problem_free(&b->problem);
 }
 
-static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m, double *load_N)
 {
     const built_bench *b = context;
     int n = b->built.model.n_cable;
-    (void)EA_N, (void)support_displacement_m;
+    (void)EA_N, (void)support_displacement_m, (void)load_N;
     for (int e = 0; e < n; e++)
         cut_m[e] += b->error_m[i % N_SAMPLE * n + e];
 }
@@ -112,7 +112,7 @@ static void solve(built_bench *b, long i)
     double *cut_m = bench_alloc(n, sizeof *cut_m);
     hf_form_result r;
     memcpy(cut_m, b->built.model.target, n * sizeof *cut_m);
-    make(b, i, cut_m, NULL, NULL);
+    make(b, i, cut_m, NULL, NULL, NULL);
     hf_built_solve(&b->built, &(hf_built_net){.cut_m = cut_m}, &b->work, &r);
     hf_built_shape shape = {b->work.position_m, b->work.tension_N, b->work.loose, b->work.displacement_m};
     take(b, i, &shape, &r);
@@ -230,7 +230,7 @@ static void write_samples(built_bench *b, const char *folder)
     write_array(file, b->built.tension_N, sizeof(double), n);
     for (int i = 0; i < N_TRUE; i++) {
         memcpy(cut_m, m->target, n * sizeof *cut_m);
-        make(b, i, cut_m, NULL, NULL);
+        make(b, i, cut_m, NULL, NULL, NULL);
         write_array(file, cut_m, sizeof *cut_m, n);
     }
     write_array(file, b->true_m, sizeof(double), N_TRUE * places);

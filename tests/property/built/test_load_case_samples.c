@@ -28,9 +28,9 @@ typedef struct {
     hf_tolerance_settings settings;
     hf_load_cases cases;
     hf_required required;
-    double attachment_move_m[N_LOAD_CASE * 3 * MAX_ATTACHMENT];
+    double attachment_move_m[N_LOAD_CASE * 3 * MAX_ATTACHMENT], by_weight_m[N_LOAD_CASE * 3 * MAX_ATTACHMENT];
     hf_montecarlo m;
-    double *z, *cut_m, *EA_N, *load_cut_m, *move_m, *load_move_m, *load_N;
+    double *z, *cut_m, *EA_N, *load_cut_m, *move_m, *load_move_m, *load_N, *spare_m;
     const hf_montecarlo_load_case *now;
     int n_done, n_slack, n_loose;
 } study;
@@ -58,9 +58,12 @@ static void make_load_cases(study *s, struct rng *rng, double part)
             c->force_N[i] = part * rng_uniform(rng, -0.5, 0.5);
         }
         c->gravity_m_per_s2[2] = k ? -9.81 : 0;
+        c->has_temperature = true;
     }
-    for (int i = 0; i < N_LOAD_CASE * 3 * MAX_ATTACHMENT; i++)
+    for (int i = 0; i < N_LOAD_CASE * 3 * MAX_ATTACHMENT; i++) {
         s->attachment_move_m[i] = part * rng_uniform(rng, -1e-4, 1e-4);
+        s->by_weight_m[i] = rng_uniform(rng, -1e-4, 1e-4);
+    }
 }
 
 static void open_study(study *s, int trial)
@@ -72,6 +75,9 @@ static void open_study(study *s, int trial)
                               .sigma_cut_ratio = 1e-5,
                               .sigma_EA_ratio = trial % 3 ? 0.01 : 0,
                               .sigma_support_m = trial % 4 == 3 ? 0 : 1e-5,
+                              .sigma_load_case_temperature_K = trial % 7 == 3 ? 0 : 5,
+                              .sigma_gravity_ratio = trial % 7 == 4 ? 0 : 0.1,
+                              .sigma_force_ratio = trial % 7 == 5 ? 0 : 0.1,
                               .batch = 0.3,
                               .samples = N_SAMPLE,
                               .seed = 7,
@@ -84,12 +90,12 @@ static void open_study(study *s, int trial)
         hf_required_create(on_truss ? N_ROW : N_ROW - 1, row_table, &s->net.scene, &s->cases, NULL, &s->required),
         HF_OK);
     ck_assert_int_eq(hf_montecarlo_create(&s->settings, &s->built, NULL, NULL, NULL, 1, &s->m), HF_OK);
-    ck_assert_msg(hf_montecarlo_require(&s->m, &s->required, on_truss ? s->attachment_move_m : NULL, &messages) ==
-                      HF_OK,
-                  "%s", messages.text);
+    const hf_built_rest rest = {s->attachment_move_m, s->by_weight_m}, none = {NULL, NULL};
+    ck_assert_msg(hf_montecarlo_require(&s->m, &s->required, on_truss ? &rest : &none, &messages) == HF_OK, "%s",
+                  messages.text);
     ck_assert_int_eq(s->m.n_load_case, N_LOAD_CASE);
     size_t n_cable = (size_t)s->built.model.n_cable, n = 3 * (size_t)s->built.model.n_node;
-    s->z = calloc(s->m.n_z + 3 * n_cable + 3 * n, sizeof *s->z);
+    s->z = calloc(s->m.n_z + 3 * n_cable + 4 * n, sizeof *s->z);
     ck_assert_ptr_nonnull(s->z);
     s->cut_m = s->z + s->m.n_z;
     s->EA_N = s->cut_m + n_cable;
@@ -97,6 +103,7 @@ static void open_study(study *s, int trial)
     s->move_m = s->load_cut_m + n_cable;
     s->load_move_m = s->move_m + n;
     s->load_N = s->load_move_m + n;
+    s->spare_m = s->load_N + n;
 }
 
 static void close_study(study *s)
@@ -108,6 +115,31 @@ static void close_study(study *s)
     hf_workspace_free(&s->work);
     hf_built_free(&s->built);
     close_design(&s->net);
+}
+
+static unsigned vary_now(const study *s)
+{
+    return hf_built_loaded_vary(&s->now->net, &s->m.errors);
+}
+
+static double error_of(const study *s, long i, hf_load_error kind)
+{
+    return hf_built_errors_of_load(&s->m.errors, i, kind, s->now->state - 1);
+}
+
+/* Sets load_N to the loads of sample i in the present load case: gravity and forces have other values. */
+static void load_sample(study *s, long i)
+{
+    const hf_model *m = &s->built.model;
+    hf_load_case c = *s->now->net.load_case;
+    double force_N[3 * MAX_BUILT_CABLE]; /* there are fewer nodes than cables */
+    hf_built_net unused;
+    for (int k = 0; k < 3 * m->n_node; k++)
+        force_N[k] = c.force_N[k] * (1 + error_of(s, i, HF_LOAD_ERROR_FORCE));
+    c.force_N = force_N;
+    c.gravity_m_per_s2[2] *= 1 + error_of(s, i, HF_LOAD_ERROR_GRAVITY);
+    double *cut_m = s->EA_N, *move_m = s->spare_m; /* unread */
+    hf_built_load_case(&s->built, &s->cases.material, &c, NULL, cut_m, move_m, s->load_N, &unused);
 }
 
 /* Draws the numbers of sample i anew and applies them to the nominal cutting lengths. */
@@ -124,13 +156,23 @@ static void apply_errors(study *s, long i, double *cut_m, double *EA_N, double *
     memcpy(cut_m, s->built.scene.target, (size_t)s->built.model.n_cable * sizeof *cut_m);
     hf_built_errors_apply(&s->m.errors, 1, s->z, cut_m, EA_N, move_m);
     const hf_load_case *c = s->now->net.load_case;
+    double warmer_K = error_of(s, i, HF_LOAD_ERROR_TEMPERATURE), heavier = error_of(s, i, HF_LOAD_ERROR_GRAVITY);
     for (int e = 0; e < s->built.model.n_cable; e++)
-        cut_m[e] *= 1 + s->cases.material.expansion_per_K[e] * c->rise_K[e];
+        cut_m[e] *= 1 + s->cases.material.expansion_per_K[e] * (c->rise_K[e] + warmer_K);
+    if (c->gravity_m_per_s2[2] == 0) heavier = 0;
+    const hf_model *m = &s->built.model;
+    for (int k = 0; k < 3 * m->n_attachment && heavier != 0; k++)
+        move_m[k % 3 * m->n_node + m->attachment_row[k / 3]] +=
+            heavier * s->by_weight_m[3 * (s->now->state - 1) * m->n_attachment + k];
 }
 
-static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m, double *load_N)
 {
-    apply_errors(context, i, cut_m, EA_N, support_displacement_m);
+    study *s = context;
+    apply_errors(s, i, cut_m, EA_N, support_displacement_m);
+    if (!load_N) return;
+    load_sample(s, i);
+    memcpy(load_N, s->load_N, 3 * (size_t)s->built.model.n_node * sizeof *load_N);
 }
 
 /* Finds sample i by the reference, in the nominal net with the changes of the load case. */
@@ -143,11 +185,12 @@ static void solve_again(study *s, long i, hf_form_result *r)
     hf_built_load_case(&s->built, &s->cases.material, s->now->net.load_case,
                        m->n_attachment ? s->attachment_move_m + 3 * k * m->n_attachment : NULL, s->load_cut_m,
                        s->load_move_m, s->load_N, &net);
+    if (i >= 0) load_sample(s, i);
     memcpy(s->move_m, s->load_move_m, n * sizeof(double));
     memcpy(s->EA_N, s->built.model.EA_N, (size_t)m->n_cable * sizeof(double));
     if (i >= 0) {
         apply_errors(s, i, s->cut_m, s->m.varies & HF_BUILT_VARIES_EA ? s->EA_N : NULL,
-                     s->m.varies & HF_BUILT_VARIES_SUPPORTS ? s->move_m : NULL);
+                     vary_now(s) & HF_BUILT_VARIES_SUPPORTS ? s->move_m : NULL);
         net = (hf_built_net){s->cut_m, s->EA_N, s->move_m, s->load_N};
     }
     hf_built_solve(&s->built, &net, &s->work, r);
@@ -216,15 +259,16 @@ static void demand_row(const study *s, long i, const hf_built_shape *is, const h
             int at = c * m->n_node + m->inner_row[k];
             square += pow(is->position_m[at] - m->position_m[at], 2);
         }
-    ck_assert_double_eq(value_of(s, i, HF_REQUIRED_TENSION, true), least_N);
-    ck_assert_double_eq(value_of(s, i, HF_REQUIRED_TENSION, false), most_N);
+    double near_N = 1e-9 * m->reference_N; /* the row has loads that were added up in another order */
+    ck_assert_double_eq_tol(value_of(s, i, HF_REQUIRED_TENSION, true), least_N, near_N);
+    ck_assert_double_eq_tol(value_of(s, i, HF_REQUIRED_TENSION, false), most_N, near_N);
     ck_assert_double_eq_tol(value_of(s, i, HF_REQUIRED_PSI, false), sqrt(square / m->n_inner_node), 1e-12);
     ck_assert_double_eq(value_of(s, i, HF_REQUIRED_SLACK, false), r->n_slack);
     ck_assert_double_eq(value_of(s, i, HF_REQUIRED_LOOSE, false), r->n_loose);
     if (least_N < HF_SLACK_RATIO * m->reference_N)
         ck_assert(isinf(value_of(s, i, HF_REQUIRED_RATIO, false)));
     else
-        ck_assert_double_eq_tol(value_of(s, i, HF_REQUIRED_RATIO, false), most_N / least_N, 1e-12 * most_N / least_N);
+        ck_assert_double_eq_tol(value_of(s, i, HF_REQUIRED_RATIO, false), most_N / least_N, 1e-7 * most_N / least_N);
 }
 
 static void hold_against(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
@@ -257,7 +301,7 @@ START_TEST(samples_in_load_cases_are_those_of_the_reference)
     for (int k = 0; k < N_LOAD_CASE; k++) {
         s.now = &s.m.load_case[k];
         ck_assert_int_eq(s.now->state, 1 + k);
-        hf_built_batch_run(s.now->net.batch, s.m.varies, 0, N_SAMPLE, make, hold_against, &s);
+        hf_built_batch_run(s.now->net.batch, vary_now(&s), 0, N_SAMPLE, make, hold_against, &s);
     }
     ck_assert_int_eq(s.n_done, N_LOAD_CASE * N_SAMPLE);
     if (_i % 5 == 4) ck_assert_int_gt(s.n_slack, 0);

@@ -19,8 +19,9 @@ struct sampling {
     int n_done, n_slack, n_loose;
 };
 
-static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m, double *load_N)
 {
+    (void)load_N;
     make_errors(&((struct sampling *)context)->errors, i, cut_m, EA_N, support_displacement_m);
 }
 
@@ -32,7 +33,7 @@ static void solve_again(struct sampling *s, long i, hf_form_result *r)
     memcpy(s->cut_m, m->target, (size_t)m->n_cable * sizeof(double));
     memcpy(s->EA_N, m->EA_N, (size_t)m->n_cable * sizeof(double));
     memset(s->move_m, 0, 3 * (size_t)m->n_node * sizeof(double));
-    make(s, i, s->cut_m, has_EA ? s->EA_N : NULL, has_supports ? s->move_m : NULL);
+    make(s, i, s->cut_m, has_EA ? s->EA_N : NULL, has_supports ? s->move_m : NULL, NULL);
     hf_built_solve(s->built, &(hf_built_net){s->cut_m, s->EA_N, s->move_m, NULL}, &s->reference, r);
 }
 

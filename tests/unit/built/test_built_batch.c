@@ -15,8 +15,9 @@ struct taken {
     int n_take[N_SAMPLE];
 };
 
-static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m)
+static void make(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m, double *load_N)
 {
+    (void)load_N;
     make_errors(&((struct taken *)context)->errors, i, cut_m, EA_N, support_displacement_m);
 }
 

@@ -256,7 +256,7 @@ START_TEST(values_of_load_cases_are_those_of_cases)
     open_problem(&p, _i, NULL, value_objectives);
     size_t n = 3 * (size_t)p.model.n_attachment;
     ck_assert_uint_le(3 * n, sizeof rest_m / sizeof *rest_m);
-    if (n) ck_assert_int_eq(hf_load_case_stage_rest(&p, rest_m), HF_OK);
+    if (n) ck_assert_int_eq(hf_load_case_stage_rest(&p, rest_m, NULL), HF_OK);
     evaluate_base(&p, &r);
     ck_assert_int_eq(hf_load_case_stage_take(&p, &p.workspace, &cases, &messages), HF_OK);
     for (int k = 0; k < 3; k++) {
