@@ -128,7 +128,10 @@ async function checkWorkshop(tab, made) {
   assert.equal(await tab.locator("#adjust h3.after").first().textContent(), name);
   const [, , move, steps, ...rest] = await heads("#adjust");
   assert.deepEqual([move, steps], ["turnbuckle adjustment (mm)", "turnbuckle adjustment (steps)"]);
-  assert.ok(rest.every((head) => /(ψ|tension|gain|slack).*/.test(head)), rest.join("; "));
+  assert.ok(
+    rest.every((head) => /(ψ|tension|gain|slack).*/.test(head)),
+    rest.join("; "),
+  );
   for (const table of await tab.locator("main table[aria-label]").all()) {
     const signed = (await table.locator("td").allTextContents()).some((text) => /^[+−]\d/.test(text)),
       caption = await table.getAttribute("aria-label");
@@ -138,23 +141,29 @@ async function checkWorkshop(tab, made) {
   assert.ok(!cables.some((head) => /^unstressed:|per mm|turn/.test(head)), cables.join("; "));
   assert.match(await tab.locator("#cables > p").textContent(), /not turnbuckle adjustments\. The workshop follows/);
   const column = cables.indexOf("estimated length error (mm)"),
-    rows = await tab.locator("#cables tbody tr").evaluateAll((all) => all.map((r) => [...r.children].map((c) => c.textContent))),
+    rows = await tab
+      .locator("#cables tbody tr")
+      .evaluateAll((all) => all.map((r) => [...r.children].map((c) => c.textContent))),
     errors_m = await tab.evaluate(() => Array.from(data.adjust.error_m)),
     ids = new Map(made.cables.map(({ id }, e) => [id, e]));
   for (const cells of rows) {
     const error_m = errors_m[ids.get(cells[0])],
       [, size, direction] = cells[column].match(/^([\d.]+) too (long|short)$/);
     assert.equal(direction, error_m > 0 ? "long" : "short");
-    assert.ok(Math.abs(number(size) - 1e3 * Math.abs(error_m)) < 6e-3 * Math.max(...errors_m.map((v) => 1e3 * Math.abs(v))));
+    assert.ok(
+      Math.abs(number(size) - 1e3 * Math.abs(error_m)) < 6e-3 * Math.max(...errors_m.map((v) => 1e3 * Math.abs(v))),
+    );
   }
 }
 
 // Terms, and those figures of the summary that `hifdm explain` knows, in its words.
 export async function checkWords(tab, made) {
   await tab.locator("#summary details summary").click();
-  const words = await tab.locator("#summary dt").evaluateAll((all) =>
-    all.map((dt) => [dt.textContent.replaceAll("\u200b", ""), dt.nextElementSibling.textContent]),
-  );
+  const words = await tab
+    .locator("#summary dt")
+    .evaluateAll((all) =>
+      all.map((dt) => [dt.textContent.replaceAll("\u200b", ""), dt.nextElementSibling.textContent]),
+    );
   assert.ok(words.length > 30 && new Set(words.map(([word]) => word)).size === words.length);
   const said = (text) => text.replace(/\s+/g, " ");
   for (const word of ["psi", "law", "residual_N", "position_bound_m"]) {
@@ -255,8 +264,8 @@ async function checkTensions(tab, made) {
   assert.equal(await row.locator("svg .tensions").count(), 1);
 }
 
-// The tolerances are those of the requirement with the lowest yield, which is not that of psi: named in the heading, its
-// bars add up to all samples, and those beyond its bound to those that fail.
+// The tolerances are those of the requirement with the lowest yield, which is not that of psi: named in the heading,
+// its bars add up to all samples, and those beyond its bound to those that fail.
 async function checkCostly(tab, made) {
   const rows = made.summary.requirements.map((row, i) => ({ ...row, i })).filter((row) => row.yield !== null),
     least = rows.reduce((a, b) => (a.yield <= b.yield ? a : b)),
@@ -303,7 +312,8 @@ async function checkCostly(tab, made) {
 // Returns the values of a data set, sorted or in the order of the samples, or null if the file has none.
 function samplesOf(made, name, isSorted = true) {
   const read =
-    "import h5py,json,sys;f=h5py.File(sys.argv[1]);n=sys.argv[2];v=f[n][:].tolist() if n in f else None;print(json.dumps(v))";
+    "import h5py,json,sys;f=h5py.File(sys.argv[1]);n=sys.argv[2]\n" +
+    "print(json.dumps(f[n][:].tolist() if n in f else None))";
   const values = JSON.parse(
     execFileSync("/usr/bin/python3", ["-c", read, join(made.folder, "result.h5"), name], { encoding: "utf8" }),
   );
@@ -337,9 +347,9 @@ export async function checkTolerance(tab, made) {
   );
 }
 
-// The points come first, in a table of their values, slopes and verdicts; objectives are in units that people read, each
-// point has a mark, and is named by its values; a design before the optimisation that is far off does not flatten the
-// front but is told; the shape below is said to be no point.
+// The points come first, in a table of their values, slopes and verdicts. Objectives are in units that people read. Each
+// point has a mark, and is named by its values. A design before the optimisation that is far off does not flatten the
+// front but is told. The shape below is said to be no point.
 export async function checkFront(browser, tab, made, folder) {
   const { initial, points, knee, minimised } = made.summary.front,
     [psi, ratio] = Object.keys(initial),
@@ -359,7 +369,10 @@ export async function checkFront(browser, tab, made, folder) {
     assert.deepEqual([position, number_], [k === knee ? "knee" : "on the front", String(id)]);
   });
   const dots = await picture.locator("path.dots").evaluateAll((all) => all.map((p) => p.getAttribute("d")));
-  assert.ok(dots.some((d) => d.match(/h0/g).length === points.length), `no mark for each point: ${dots}`);
+  assert.ok(
+    dots.some((d) => d.match(/h0/g).length === points.length),
+    `no mark for each point: ${dots}`,
+  );
   assert.deepEqual(await picture.locator(".label").allTextContents(), ["ψ (mm)", "ratio boundary"]);
   const highest = number(await picture.locator("text[text-anchor=end]").last().textContent());
   assert.ok(highest < Math.max(...points.map(({ objective }) => objective[ratio])) && initial[ratio] > 1.01);
@@ -367,7 +380,9 @@ export async function checkFront(browser, tab, made, folder) {
   same(number(caption.match(/ratio boundary of the initial design \(([\d.]+)\)/)[1]), initial[ratio], 6);
   await picture.focus();
   await tab.keyboard.press("End");
-  const [, x, y] = (await tab.locator("#front .tip strong").textContent()).match(/^ψ ([\d.]+) mm, ratio boundary (.*)$/);
+  const [, x, y] = (await tab.locator("#front .tip strong").textContent()).match(
+    /^ψ ([\d.]+) mm, ratio boundary (.*)$/,
+  );
   same(number(x), 1e3 * points.at(-1).objective[psi], 6);
   same(number(y), points.at(-1).objective[ratio], 6);
   await tab.keyboard.press("Escape");
@@ -395,14 +410,16 @@ async function checkJudgedFront(browser, made, folder) {
   }));
   const copy = page.replace(DATA, (_, head, old, tail) => head + JSON.stringify(data) + tail);
   await openCopy(browser, folder, "judged", copy, async (tab) => {
-    const dots = await tab.locator("#front svg[tabindex] path.dots").evaluateAll((all) =>
-      all.map((p) => p.getAttribute("d").match(/h0/g).length),
-    );
+    const dots = await tab
+      .locator("#front svg[tabindex] path.dots")
+      .evaluateAll((all) => all.map((p) => p.getAttribute("d").match(/h0/g).length));
     for (const n of [40, 20, 10]) assert.ok(dots.includes(n), `${n} points of a kind, but marks of ${dots}`);
     const legend = await tab.locator("#front .legend").innerText();
     for (const word of ["passes", "fails", "undecided"]) assert.ok(legend.includes(word), legend);
     assert.deepEqual(
-      await tab.locator('#front td[data-label="Verdict"]').evaluateAll((all) => [...new Set(all.map((c) => c.innerText))]),
+      await tab
+        .locator('#front td[data-label="Verdict"]')
+        .evaluateAll((all) => [...new Set(all.map((c) => c.innerText))]),
       ["undecided (1)", "pass"],
     );
   });

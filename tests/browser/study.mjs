@@ -24,7 +24,10 @@ export async function checkPoints(tab, page, made) {
   assert.equal(await tab.locator("#points tr.chosen").count(), 1);
   assert.equal(all[0], Math.min(...all));
   await psi.click();
-  assert.deepEqual((await shown()).slice(1), all.slice(1).sort((a, b) => b - a));
+  assert.deepEqual(
+    (await shown()).slice(1),
+    all.slice(1).sort((a, b) => b - a),
+  );
   assert.match(await tab.locator("#sweep > p.same").innerText(), /At all points: tension ratio, inner cables 1[.;]/);
   assert.equal(await tab.locator("#points thead th", { hasText: "inner" }).count(), 0);
   await checkShares(tab, made.study);
@@ -58,7 +61,10 @@ export async function checkSurfaceOfStudy(tab, study) {
   assert.ok(titles.includes("Objective tension tie") && !titles.includes("Objective psi"), titles.join("; "));
   assert.match(text, /The page does not list the objective psi separately, because this objective equals ψ\./);
   const ticks = await tab.locator("#sweep .chart svg[tabindex] text[text-anchor=middle]:not(.label)").allTextContents();
-  assert.ok(ticks.every((t) => /^\d+$/.test(t)), `whole values, but ticks ${ticks.join("; ")}`);
+  assert.ok(
+    ticks.every((t) => /^\d+$/.test(t)),
+    `whole values, but ticks ${ticks.join("; ")}`,
+  );
   assert.match(text, /All points have EA boundary 200000 N/);
   assert.ok(!/Fig\.|Chen/.test(text), "a study of one's own speaks of the paper");
   const errors = ["RMS of facets (mm)", "RMS of facets, fitted (mm)", "1 dB gain loss (GHz)"],
@@ -155,8 +161,8 @@ async function checkMarginMap(tab, study, at) {
     }
 }
 
-// Three axes: a map of two for each value of the third, all with the same colours, and each point in the right cell. The
-// points are named by their values.
+// Three axes: a map of two for each value of the third, all with the same colours, and each point in the right cell.
+// The points are named by their values.
 async function checkMarginMaps(tab, study, at) {
   const heat = tab.locator("#sweep .heat").first(),
     sorted = ({ values }) => [...new Set(values)].sort((a, b) => a - b),
@@ -182,7 +188,10 @@ async function checkMarginMaps(tab, study, at) {
     runs = colours.filter((colour, k) => colour !== colours[k - 1]).length;
   assert.equal(runs, new Set(colours).size, "the colours of the maps differ");
   const link = tab.locator("#points tr.chosen a");
-  assert.match(await link.getAttribute("aria-label"), /^(report|result file): pretension \d+ N, EA inner \d+ N, sigma cut \S+ mm$/);
+  assert.match(
+    await link.getAttribute("aria-label"),
+    /^(report|result file): pretension \d+ N, EA inner \d+ N, sigma cut \S+ mm$/,
+  );
   assert.match(await link.textContent(), /^(report|result file)$/);
 }
 
@@ -193,7 +202,11 @@ async function checkMarginLine(tab, study, at) {
     words = { pass: "passes", fail: "fails", undecided: "undecided" };
   assert.match(legend, /no margin/);
   for (const [verdict, word] of Object.entries(words))
-    assert.equal(legend.includes(word), study.id.some((_, i) => at(i)[0] === verdict), `${word} in ${legend}`);
+    assert.equal(
+      legend.includes(word),
+      study.id.some((_, i) => at(i)[0] === verdict),
+      `${word} in ${legend}`,
+    );
   const picture = chart.locator("svg[role=img]");
   await picture.focus();
   await tab.keyboard.press("Home");

@@ -313,7 +313,8 @@ START_TEST(two_results_are_compared)
     HIFDM(0, "run", scene, "--set", "form.pretension_N=12", "-o", second, "--quiet");
     HIFDM(0, "report", first, second, "-o", page);
     demand_well_formed(page);
-    EXPECT(data_of(page, "ab.json"), "--", "a['other']['summary']['file'].endswith('/b.h5') and a['other']['case_text'] == a['case_text']",
+    EXPECT(data_of(page, "ab.json"), "--",
+           "a['other']['summary']['file'].endswith('/b.h5') and a['other']['case_text'] == a['case_text']",
            "a['other']['overrides'] == ['form.pretension_N=12\\n'] and a['overrides'] == ['']",
            "[s['stage'] for s in a['other']['shapes']] == ['form']",
            "abs(a['other']['summary']['form']['psi_m'] - a['summary']['form']['psi_m']) < 1e-9",

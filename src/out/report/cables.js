@@ -20,14 +20,18 @@ function numberColumn(name, values, digits, { unit = 1, isChange = false, roundi
     most = unit * size;
   if (!range(values) || size < rounding) return null;
   const decimals = most > 0 ? Math.min(12, Math.max(0, digits - 1 - Math.floor(Math.log10(most)))) : 0;
-  const show = (v) =>
-    Number.isFinite(v) ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–";
+  const show = (v) => (Number.isFinite(v) ? (isChange && v > 0 ? "+" : "") + minus((unit * v).toFixed(decimals)) : "–");
   return { name, number: true, of: (e) => values[e], show: (e) => show(values[e]), size: isChange };
 }
 // The same for a column with a value of each cable.
 const RESOLVED_RATIO = 1e-9; // relative size of rounding of tensions
 const cableColumn = (name, of, digits, options) =>
-  numberColumn(name, Array.from({ length: net.n_cable }, (_, e) => of(e)), digits, options);
+  numberColumn(
+    name,
+    Array.from({ length: net.n_cable }, (_, e) => of(e)),
+    digits,
+    options,
+  );
 
 // Returns the column of the estimated length errors. Words state their direction, because a workshop could take a sign
 // for a turnbuckle adjustment.
@@ -60,7 +64,9 @@ function cableColumns(before, after, families, choose) {
     { name: "Family", beside: true, of: (e) => family[e], show: (e) => family[e] },
     two ? cableColumn(`tension, ${before.name} (N)`, (e) => before.tension_N[e], 5) : null,
     cableColumn(`tension, ${after.name} (N)`, (e) => after.tension_N[e], 5),
-    two ? cableColumn(`change${otherShape ? ` to ${otherName}` : ""} (N)`, change, 4, { isChange: true, rounding }) : null,
+    two
+      ? cableColumn(`change${otherShape ? ` to ${otherName}` : ""} (N)`, change, 4, { isChange: true, rounding })
+      : null,
     cableColumn(`length${ofAfter} (m)`, (e) => after.length_m[e], 6),
     length ? cableColumn(`unstressed length${ofAfter} (m)`, (e) => length[e], 6) : null,
     lengthened
@@ -112,7 +118,9 @@ function writeCables(view) {
       ? "The length errors are not turnbuckle adjustments." +
         (adjust.adjustments.length ? ` The workshop follows the table “${WORKSHOP}”.` : "")
       : null,
-    ofDesign().psi_by_cut ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack." : null,
+    ofDesign().psi_by_cut
+      ? "ψ per mm is the change of ψ if the cable becomes 1 mm longer and no cable goes slack."
+      : null,
     ofDesign().cable_share
       ? "The share of the error is a first-order estimate of the contribution of each cable to ψ²."
       : null,
@@ -126,5 +134,15 @@ function writeCables(view) {
   });
   view.onChoose = (e) => all.first(e);
   const hint = el("span", { class: "keys" }, CABLES_SAID);
-  section("cables", "Cables", el("p", {}, words.map((text) => `${text} `), hint), all.node);
+  section(
+    "cables",
+    "Cables",
+    el(
+      "p",
+      {},
+      words.map((text) => `${text} `),
+      hint,
+    ),
+    all.node,
+  );
 }

@@ -35,7 +35,8 @@ function placeTip(tip, x, y, content) {
 
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
 // series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside the picture }
-//   isLevel: the same value everywhere, drawn without marks; isMarked: however many points; size: of its marks, in pixels
+//   isLevel: the same value everywhere, drawn without marks; size: of its marks, in pixels
+//   isMarked: its line has marks, however many points there are
 //   bars: half the width of a bar around each x, which begins at 0
 // marks: { name, at, colour, dash } of vertical lines; the axis of x includes them
 // colour: a variable of the page's style, or a function that returns red, green and blue
@@ -94,7 +95,8 @@ function chart(options) {
       on = good;
     });
     const line = svg("path", { d: text, ...mark(s), style: `stroke:${paint(s.colour)}` });
-    return s.dots || s.isLevel || (x.length > MARKED_MAX && !s.isMarked) ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
+    const isBare = s.dots || s.isLevel || (x.length > MARKED_MAX && !s.isMarked);
+    return isBare ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
   }
 
   // Draws infinite values at the upper edge of the picture, with one sign for each run of neighbours.

@@ -63,7 +63,9 @@ function writeMessages() {
   let title = lines.length === 1 ? "One warning" : `${lines.length} warnings`;
   if (other && other.summary.errors) title = `The run of ${otherName} failed`;
   if (summary.errors)
-    title = `${other ? `The run of ${thisName}` : "This run"} failed${isOfForm ? ": its figures are those of the form-finding" : ""}`;
+    title =
+      `${other ? `The run of ${thisName}` : "This run"} failed` +
+      (isOfForm ? ": its figures are those of the form-finding" : "");
   if (other && summary.errors && other.summary.errors) title = "Both runs failed";
   writeWarnings(title, lines);
 }

@@ -150,7 +150,9 @@ function netView({ canvas, tip, bar, scaleLabel, overlayLabel }) {
   // Load cases are displaced from the shape that is drawn, because their displacements are often much smaller than its
   // deviations from the target positions. All have the same factor.
   function prepareOverlays(shape) {
-    const moves = state.overlay.map(({ displacement_m: d }) => d.map((v, k) => v - (shape ? shape.displacement_m[k] : 0))),
+    const moves = state.overlay.map(({ displacement_m: d }) =>
+        d.map((v, k) => v - (shape ? shape.displacement_m[k] : 0)),
+      ),
       factor = SCALES[scaleWithin(Math.max(0, ...moves.flatMap((d) => range(d).map(Math.abs))), radius)];
     overlays = moves.map((d, k) => ({
       at: drawn.at.map((v, i) => v + factor * d[i]),
@@ -166,8 +168,7 @@ function netView({ canvas, tip, bar, scaleLabel, overlayLabel }) {
     for (const name of ["ink", "soft", "ghost", "one", "four", "alarm"]) ink[name] = css(`--${name}`);
     displace(drawn.at, target, shape && shape.displacement_m);
     prepareOverlays(shape);
-    if (truss)
-      displace(beams.at, truss.position_m, shape && (shape.truss_displacement_m || truss.displacement_m));
+    if (truss) displace(beams.at, truss.position_m, shape && (shape.truss_displacement_m || truss.displacement_m));
     sortIntoBatches();
     drawLegend();
     isStale = false;
@@ -262,8 +263,7 @@ function netView({ canvas, tip, bar, scaleLabel, overlayLabel }) {
   function drawSupports(c) {
     const side = n > 1000 ? 1.5 : 3;
     c.fillStyle = ink.ink;
-    for (const i of supports)
-      if (hasVisible[i]) c.fillRect(drawn.x[i] - side, drawn.y[i] - side, 2 * side, 2 * side);
+    for (const i of supports) if (hasVisible[i]) c.fillRect(drawn.x[i] - side, drawn.y[i] - side, 2 * side, 2 * side);
   }
 
   function drawMarks(c) {
@@ -468,7 +468,12 @@ function netView({ canvas, tip, bar, scaleLabel, overlayLabel }) {
     const shape = state.shape,
       rows = [["group", groupOf(e), ""]];
     if (setsOf[e].length) rows.push(["sets", setsOf[e].map((k) => net.sets[k].name).join(", "), ""]);
-    if (adjust) rows.push(["estimated length error", `${inMm(Math.abs(adjust.error_m[e]), 3)} ${tooWhat(adjust.error_m[e])}`, ""]);
+    if (adjust)
+      rows.push([
+        "estimated length error",
+        `${inMm(Math.abs(adjust.error_m[e]), 3)} ${tooWhat(adjust.error_m[e])}`,
+        "",
+      ]);
     if (adjustmentOf.has(e))
       rows.push(["turnbuckle adjustment", `${signed(1e3 * adjustmentOf.get(e).turnbuckle_m)} mm`, ""]);
     if (shape)

@@ -241,7 +241,14 @@ function curveChart(study, figure, axis, others, groups, stage) {
       dots: x.length < 2,
     })),
   );
-  if (isOne && figure.key === MARGIN) series.push(...verdictSeries(study, x.map((v) => groups[0].at.get(v)), figure));
+  if (isOne && figure.key === MARGIN)
+    series.push(
+      ...verdictSeries(
+        study,
+        x.map((v) => groups[0].at.get(v)),
+        figure,
+      ),
+    );
   const isAlone = isOne && isStaged && stages.length === 1 && figure.stages.length > 1; // the chart then has no legend
   return chart({
     ...figure,
@@ -293,8 +300,7 @@ function heatMap(study, figure, axis, other, stage, third) {
     panels = third ? valuesOf(study, third) : [""],
     place = (x, y, z) => `${x} ${y} ${z}`,
     at = new Map();
-  for (const i of pointsDone(study))
-    at.set(place(axis.value(i), other.value(i), third ? third.value(i) : ""), i);
+  for (const i of pointsDone(study)) at.set(place(axis.value(i), other.value(i), third ? third.value(i) : ""), i);
   const from = stageOf(figure, stage),
     isMargin = figure.key === MARGIN;
   const all = range([...at.values()].map((i) => figure.of(i, from)));
@@ -336,7 +342,12 @@ function heatMap(study, figure, axis, other, stage, third) {
     const name = third ? headOf(third, label(third, z)) : "";
     return el(
       "div",
-      { class: "scroll", tabindex: 0, role: "region", "aria-label": `${figure.title}, a map of two axes ${name}`.trim() },
+      {
+        class: "scroll",
+        tabindex: 0,
+        role: "region",
+        "aria-label": `${figure.title}, a map of two axes ${name}`.trim(),
+      },
       name ? el("h4", {}, name) : null,
       el(
         "table",
@@ -346,13 +357,23 @@ function heatMap(study, figure, axis, other, stage, third) {
           "tbody",
           {},
           rows.map((y) =>
-            el("tr", {}, el("th", { scope: "row" }, label(other, y)), columns.map((x) => cell(at.get(place(x, y, z))))),
+            el(
+              "tr",
+              {},
+              el("th", { scope: "row" }, label(other, y)),
+              columns.map((x) => cell(at.get(place(x, y, z)))),
+            ),
           ),
         ),
         el(
           "tfoot",
           {},
-          el("tr", {}, el("th", { scope: "row" }, ""), columns.map((x) => el("th", { scope: "col" }, label(axis, x)))),
+          el(
+            "tr",
+            {},
+            el("th", { scope: "row" }, ""),
+            columns.map((x) => el("th", { scope: "col" }, label(axis, x))),
+          ),
         ),
       ),
     );
@@ -538,11 +559,13 @@ function writePoints(study, axes, figures, best) {
     ...(study.meets_yield.some((a) => a)
       ? [{ name: "Meets required yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
       : []),
-    ...figures.filter(isInTable).flatMap((f) =>
-      f.drawn
-        .filter((s) => f.key === "psi_m" || s === f.main || (isLoadCase(s) && !f.isError))
-        .map((s) => figureColumn(study, f, s)),
-    ),
+    ...figures
+      .filter(isInTable)
+      .flatMap((f) =>
+        f.drawn
+          .filter((s) => f.key === "psi_m" || s === f.main || (isLoadCase(s) && !f.isError))
+          .map((s) => figureColumn(study, f, s)),
+      ),
     { name: "Result", of: (i) => study.id[i], show: (i) => pointLink(study, axes, i) },
   ];
   const notes = [];
@@ -596,8 +619,7 @@ function writeAdvice(study) {
   );
 }
 
-const statusText = (word) =>
-  word === "not_evaluated" ? "missing" : word === "ok" ? "done" : word.replace(/_/g, " ");
+const statusText = (word) => (word === "not_evaluated" ? "missing" : word === "ok" ? "done" : word.replace(/_/g, " "));
 
 function writeStudy(study) {
   const count = (test) => study.status.filter(test).length,
@@ -618,9 +640,7 @@ function writeStudy(study) {
   document.getElementById("subtitle").textContent = shown(
     `Sweep of ${fmtCount(study.n)} points over ${listed((varying.length ? varying : axes).map((a) => a.name))}`,
   );
-  document.getElementById("footer").textContent = shown(
-    `Merged study ${study.path}.`,
-  );
+  document.getElementById("footer").textContent = shown(`Merged study ${study.path}.`);
   // points grouped by the kind of failure, with the reason of the first
   const ways = new Map();
   study.reason.forEach((reason, i) => {

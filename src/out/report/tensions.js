@@ -23,7 +23,8 @@ function tightest(rows, key) {
   return key === "at_least" ? Math.max(...values) : Math.min(...values);
 }
 
-// Returns one row for each set and load case: its range, that of the samples, and the bounds. Sets with bounds are first.
+// Returns one row for each set and load case: its range, that of the samples, and the bounds. Sets with bounds come
+// first.
 function tensionRows() {
   const required = judged().filter(({ figure: of }) => of === "tension"),
     limits = data.limits || [],
@@ -50,7 +51,12 @@ function tensionRows() {
             required: isOther ? [null, null] : [tightest(rows, "at_least"), tightest(rows, "at_most")],
             // limits of the search hold for the nominal net
             limits: ["at_least", "at_most"].map((key) =>
-              shape === resultShape ? tightest(limits.filter((row) => row.set === set), key) : null,
+              shape === resultShape
+                ? tightest(
+                    limits.filter((row) => row.set === set),
+                    key,
+                  )
+                : null,
             ),
           }
         : [];
@@ -61,7 +67,7 @@ function tensionRows() {
 // Draws the range of a row as a bar, the samples as thin lines beyond it, and bounds as vertical marks.
 function rangePicture(row, [low, high]) {
   const x = (v) => 4 + (192 * (v - low)) / (high - low || 1),
-    mark = (kind) => (v) => hasNumber(v) ? svg("path", { class: kind, d: `M${x(v).toFixed(1)} 0V18` }) : null,
+    mark = (kind) => (v) => (hasNumber(v) ? svg("path", { class: kind, d: `M${x(v).toFixed(1)} 0V18` }) : null),
     line = (kind, from, to) => svg("path", { class: kind, d: `M${x(from).toFixed(1)} 9H${x(to).toFixed(1)}` });
   const [least, most] = row.tensions,
     [few, many] = row.samples;
@@ -112,7 +118,9 @@ function tensionTable() {
   ].filter((column) => column);
   const words = [
     "The table lists the tensions of each set of cables. Bars show their range.",
-    hasSamples ? "Thin lines extend to the minimum that 5 % and the maximum that 95 % of the samples do not exceed." : "",
+    hasSamples
+      ? "Thin lines extend to the minimum that 5 % and the maximum that 95 % of the samples do not exceed."
+      : "",
     bounds.length ? "Vertical marks are required bounds (solid) and limits of the search (dashed)." : "",
   ].filter((word) => word);
   return [
@@ -164,12 +172,11 @@ function writeTensions() {
     "tensions",
     "Tensions",
     ...tensionTable(),
-    el("p", {}, "Each mark of the charts is one cable. The cable numbers of each group follow the order of the result file."),
     el(
-      "div",
-      { class: "charts" },
-      tensionChart("inner"),
-      tensionChart("boundary"),
+      "p",
+      {},
+      "Each mark of the charts is one cable. The cable numbers of each group follow the order of the result file.",
     ),
+    el("div", { class: "charts" }, tensionChart("inner"), tensionChart("boundary")),
   );
 }

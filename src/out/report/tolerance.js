@@ -51,8 +51,7 @@ function toleranceChart(t) {
     counted: false,
     log: false,
     caption:
-      `Each bar shows the share of samples in one of ${n} intervals of ψ.` +
-      (far.length ? ` ${far.join("; ")}.` : ""),
+      `Each bar shows the share of samples in one of ${n} intervals of ψ.` + (far.length ? ` ${far.join("; ")}.` : ""),
     head: (i) => `ψ of ${edge(i)} to ${edge(i + 1)} mm`,
     series: [{ name: "samples", values: scaled(t.histogram, 100), colour: "--one", bars: width / 2 }],
     marks: marks.filter(({ isFar }) => !isFar),
@@ -76,9 +75,7 @@ function outsideOf(row, c) {
 
 // Returns the curve of the load case in which a row costs most.
 const costliestCurve = (row) =>
-  row.curves
-    .filter(({ value }) => value.length)
-    .reduce((a, b) => (outsideOf(row, a) >= outsideOf(row, b) ? a : b));
+  row.curves.filter(({ value }) => value.length).reduce((a, b) => (outsideOf(row, a) >= outsideOf(row, b) ? a : b));
 
 // Draws the histogram of the figure of a row.
 const BINS = 40;
@@ -92,7 +89,11 @@ function requirementChart(row, c) {
   const upTo = (i) => (i === 0 ? 0 : i === n ? 100 * c.share.at(-1) : shareBelow(c, first + i * width)),
     bins = Array.from({ length: n }, (_, i) => i),
     x = bins.map((i) => times * (first + (i + 0.5) * width)),
-    marks = boundMarks(row, times, ends.map((v) => times * v)),
+    marks = boundMarks(
+      row,
+      times,
+      ends.map((v) => times * v),
+    ),
     far = marks.filter(({ isFar }) => isFar).map(({ name }) => name),
     name = `${plainWord(row.figure)}${c.bound === "at_least" && row.figure === "tension" ? ", minimum" : ""}`;
   return chart({
@@ -103,9 +104,13 @@ function requirementChart(row, c) {
     x,
     counted: isCount,
     log: false,
-    caption: `Each bar shows the share of samples in one interval.${far.length ? ` Outside of the picture: ${far.join("; ")}.` : ""}`,
+    caption:
+      "Each bar shows the share of samples in one interval." +
+      (far.length ? ` Outside of the picture: ${far.join("; ")}.` : ""),
     head: (i) => `${name} of about ${fmt(x[i], 5)}${unit ? ` ${unit}` : ""}`,
-    series: [{ name: "samples", values: bins.map((i) => upTo(i + 1) - upTo(i)), colour: "--one", bars: (times * width) / 2 }],
+    series: [
+      { name: "samples", values: bins.map((i) => upTo(i + 1) - upTo(i)), colour: "--one", bars: (times * width) / 2 },
+    ],
     marks: marks.filter(({ isFar }) => !isFar),
   });
 }
