@@ -60,14 +60,14 @@ size_t hf_antenna_scratch(const hf_antenna *antenna);
 /* The groups of figures. */
 enum { HF_ANTENNA_REFOCUSED = 1, HF_ANTENNA_FIXED = 2, HF_ANTENNA_POINTING = 4, HF_ANTENNA_ALL = 7 };
 
-/* Computes the groups `what` of the figures of a shape with the facets of the antenna; the others are NaN. If a cable cannot hold the pull of the mesh, there is
- * no shape; do not call this function then. scratch [hf_antenna_scratch]. Returns HF_OK or HF_NO_MEMORY. Allocates
- * memory only if the best fit is not near that of the design. */
+/* Computes the groups `what` of the figures of a shape with the facets of the antenna; the others are NaN. If a cable
+ * cannot hold the pull of the mesh, there is no shape; do not call this function then. scratch [hf_antenna_scratch].
+ * Returns HF_OK or HF_NO_MEMORY. Allocates memory only if the best fit is not near that of the design. */
 hf_status hf_antenna_measure(const hf_antenna *antenna, unsigned what, const hf_pattern_surface *shape, double *scratch,
                              hf_antenna_figures *figures);
 
-/* Computes a bound of the change of the groups `what` of the figures of a shape, to first order, if each node moves by at most
- * position_error_m. A figure that is NaN has a bound that is NaN. The bounds of the refocused feed are also NaN if the
+/* Computes a bound of the change of the groups `what` of the figures of a shape, to first order, if each node moves by
+ * at most position_error_m. A figure that is NaN has a bound that is NaN. The bounds of the refocused feed are also NaN if the
  * points do not determine all parameters of the best fit. The sags of a mesh count as constant. Returns HF_OK or
  * HF_NO_MEMORY. Takes about a hundred times as long as hf_antenna_measure. */
 hf_status hf_antenna_bound(const hf_antenna *antenna, unsigned what, const hf_pattern_surface *shape,
