@@ -44,7 +44,7 @@ typedef struct {
     /* [n_node + 1], and the cables of each support, ascending: cable[start[i]] to cable[start[i + 1] - 1]. Nodes that
      * are no supports have none. NULL without a row about the pull. */
     int *support_start, *support_cable;
-    int n_antenna;               /* number of different frequencies of rows */
+    int n_antenna; /* number of different frequencies of rows */
     double frequency_Hz[HF_REQUIREMENT_ROWS_MAX];
     hf_antenna *antenna;         /* [n_antenna] made by hf_required_radio_make */
     double mesh_tension_N_per_m; /* of the mesh of the antennas */

@@ -126,8 +126,9 @@ static hf_status write_required(hf_hdf5 *io, const hf_montecarlo *t, const hf_st
     const hf_required *q = t->required;
     char path[HF_LAYOUT_LOAD_CASE_SIZE];
     if (!q) return HF_OK;
-    required_columns *c = malloc(sizeof *c);
-    if (!c) return HF_NO_MEMORY;
+    required_columns *c;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(c, 1)));
     hf_status status = HF_OK;
     hf_hdf5_close(io, hf_hdf5_make_group(io, "/tolerance/load_case"));
     for (int state = 0; state < q->n_state && status == HF_OK; state++) {
@@ -136,7 +137,7 @@ static hf_status write_required(hf_hdf5 *io, const hf_montecarlo *t, const hf_st
         snprintf(path, sizeof path, "/tolerance/load_case/%s", hf_required_state_name(q, state));
         if (c->n > 0) status = write_columns(io, t, path, c->n, c->column, rows);
     }
-    free(c);
+    hf_arena_free_block(block);
     return status;
 }
 

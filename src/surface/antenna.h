@@ -67,8 +67,8 @@ hf_status hf_antenna_measure(const hf_antenna *antenna, unsigned what, const hf_
                              hf_antenna_figures *figures);
 
 /* Computes a bound of the change of the groups `what` of the figures of a shape, to first order, if each node moves by
- * at most position_error_m. A figure that is NaN has a bound that is NaN. The bounds of the refocused feed are also NaN if the
- * points do not determine all parameters of the best fit. The sags of a mesh count as constant. Returns HF_OK or
+ * at most position_error_m. A figure that is NaN has a bound that is NaN. The bounds of the refocused feed are also NaN
+ * if the points do not determine all parameters of the best fit. The sags of a mesh count as constant. Returns HF_OK or
  * HF_NO_MEMORY. Takes about a hundred times as long as hf_antenna_measure. */
 hf_status hf_antenna_bound(const hf_antenna *antenna, unsigned what, const hf_pattern_surface *shape,
                            double position_error_m, hf_antenna_figures *bound);
