@@ -38,6 +38,9 @@ HF_API_BEGIN
       .description = "free nodes whose positions no objective fixes in all directions; 0: nothing was optimised")      \
     X(double, uncounted_move_m, REAL, .json = 1,                                                                       \
       .description = "maximum displacement of these nodes since form-finding that no objective counts, in the result") \
+    X(double, scale_min, REAL, .json = 1,                                                                              \
+      .description = "minimum factor by which the result scales design variables with link: scale; NaN: none")         \
+    X(double, scale_max, REAL, .json = 1, .description = "maximum factor by which the result scales them")             \
     X(int, n_cable, INT, .description = "cables")                                                                      \
     X(int, n_variable, INT, .description = "design variables")                                                         \
     X(int, half_bandwidth, INT, .description = "of the force density matrix")                                          \

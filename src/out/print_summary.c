@@ -14,6 +14,7 @@
 #define FREQUENCY_MOST_HZ 1e12 /* higher frequencies come from errors that are only rounding */
 #define BETTER_FIT 1.01        /* ratio of surface errors that is worth a line */
 #define MORE_LOSS_DB 0.001     /* more gain loss that is worth a line */
+#define SAME_SCALE 1e-9        /* relative difference of factors by rounding */
 #define MOVED_M 1e-6           /* displacement of uncounted nodes that is worth a word */
 
 /* Returns the result of a stage, and that of the form-finding without one (HF_N_STAGE). */
@@ -683,7 +684,9 @@ static void print_net(const hf_summary *s, hf_stage result, FILE *f)
     if (s->has_own_tensions)
         fputs("; each cable has a law of its own", f);
     else
-        fprintf(f, "; pretension %g N", s->pretension_N);
+        fprintf(f, "; pretension %g N%s", s->pretension_N, s->scale_min > 0 ? " before optimisation" : "");
+    if (s->scale_min > 0) fprintf(f, "; the result scales variables by %.4g", s->scale_min);
+    if (s->scale_min > 0 && s->scale_max > s->scale_min * (1 + SAME_SCALE)) fprintf(f, " to %.4g", s->scale_max);
     bool is_moved = isfinite(s->uncounted_move_m) && s->uncounted_move_m > MOVED_M;
     if (s->n_uncounted > 0 && result != HF_STAGE_FORM && result != HF_N_STAGE && is_moved)
         fprintf(f, "; the optimisation moved %d nodes by up to %.4g mm in uncounted directions", s->n_uncounted,

@@ -246,7 +246,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
     s->n_node = model->n_node;
     s->n_free = model->n_free;
     s->n_inner_node = model->n_inner_node;
-    s->uncounted_move_m = (double)NAN;
+    s->uncounted_move_m = s->scale_min = s->scale_max = (double)NAN;
     s->n_cable = model->n_cable;
     s->n_variable = model->n_variable;
     s->search.n_leader = model->n_leader;

@@ -23,6 +23,7 @@
 #include "run/tolerance_stage.h"
 #include "store/store_read.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -209,6 +210,19 @@ static void keep_messages(const hf_messages *messages, char text[HF_WARNINGS_SIZ
     hf_text_trim_utf8(text);
 }
 
+/* Writes into the summary by which factors the result scales variables with `link: scale`. */
+static void note_scale(const hf_run *r, hf_summary *s)
+{
+    const hf_model *m = &r->problem.model;
+    const double *initial = r->optimiser.population.initial, *design = s->taken.point ? r->taken.design : r->design;
+    if (!r->has_design || !m->variable || !initial || (s->front && !s->taken.point)) return;
+    for (int k = 0; k < m->n_variable; k++) {
+        if (!m->variable[k].scales || initial[k] == 0) continue;
+        s->scale_min = fmin(s->scale_min, design[k] / initial[k]); /* fmin and fmax ignore NaN */
+        s->scale_max = fmax(s->scale_max, design[k] / initial[k]);
+    }
+}
+
 /* Writes the doubts about the result and its summary, and finishes the file. Returns `status`, or an error of the
  * store. */
 static hf_status finish(hf_run *r, hf_summary *s, hf_status status, hf_messages *messages)
@@ -217,6 +231,7 @@ static hf_status finish(hf_run *r, hf_summary *s, hf_status status, hf_messages 
     hf_result_doubt_truss(p, &r->truss, r->shape, messages);
     hf_result_doubt_strain(p, r->shape, messages);
     hf_result_doubt_uncounted(p, &r->places, r->shape, s, messages);
+    note_scale(r, s);
     if (s->has_truss) HF_TRY(hf_store_truss(r->store, &p->carrier, &r->truss, messages));
     keep_messages(messages, s->warnings);
     s->finished = true;

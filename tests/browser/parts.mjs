@@ -348,8 +348,8 @@ export async function checkTolerance(tab, made) {
 }
 
 // The points come first, in a table of their values, slopes and verdicts. Objectives are in units that people read.
-// Each point has a mark, and is named by its values. A design before the optimisation that is far off does not flatten the
-// front but is told. The shape below is said to be no point.
+// Each point has a mark, and is named by its values. A design before the optimisation that is far off does not flatten
+// the front but is told. The shape below is said to be no point.
 export async function checkFront(browser, tab, made, folder) {
   const { initial, points, knee, minimised } = made.summary.front,
     [psi, ratio] = Object.keys(initial),

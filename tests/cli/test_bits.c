@@ -22,7 +22,11 @@ static const bits_row rows[] = {
     {"chen2022-search", "5", {"s/generations: 400/generations: 40/", NULL}},
     {"chen2022-search-truss", "1", {NULL, NULL}},
     {"cylinder-tied-8m", NULL, {NULL, NULL}},
-    {"dish-8m", NULL, {"form.pretension_N=40", "tolerance.samples=400"}},
+    {"dish-8m",
+     NULL,
+     {"requirements=[{figure: facets, at_most: 0.55e-3, load_case: all, share: 0.95}, {figure: tension, set: tie, "
+      "at_least: 1, load_case: all, share: 0.95}, {figure: gain_loss, at_most: 0.15}]",
+      "tolerance.samples=400"}},
     {"paraboloid-6m", NULL, {NULL, NULL}},
     {"paraboloid-load-cases", NULL, {NULL, NULL}},
     {"paraboloid-even", NULL, {NULL, NULL}},
