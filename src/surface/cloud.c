@@ -42,6 +42,7 @@ void hf_cloud_lay_out(hf_arena *arena, hf_cloud *to)
     to->pose.slope_center = hf_arena_take(arena, 3 * n_fit, sizeof(double));
     to->pose.pull = hf_arena_take(arena, N_MOST * 3 * n_fit, sizeof(double));
     to->pose.pull_area = hf_arena_take(arena, N_MOST * n_fit, sizeof(double));
+    to->pose.slope_size = hf_arena_take(arena, n_fit, sizeof(double));
 }
 
 /* ---- points ---- */
@@ -136,17 +137,32 @@ static void take_errors(hf_cloud *c)
 
 /* ---- the best fit ---- */
 
-static hf_fit_frame frame_of(const hf_cloud *c)
+static hf_fit_frame frame_of(const hf_cloud *c, const hf_fit_parameters *found)
 {
-    return hf_fit_frame_of(c->kind, c->focal_length_m, c->n, c->position_m, c->n_facet > 0 ? c->root_m : NULL,
-                           &c->pose.found);
+    return hf_fit_frame_of(c->kind, c->focal_length_m, c->n, c->position_m, c->n_facet > 0 ? c->root_m : NULL, found);
 }
 
-/* Computes G [n], and H [n][n] factored. Returns HF_OK or HF_SINGULAR. */
+/* Returns by how much held parameter k, in its unit, grows with the size. A bound of a shift is a part of the size. */
+static double grow_with_size(const hf_fit_parameters *found, int k)
+{
+    int quantity = found->quantity[k];
+    return quantity == HF_FIT_CURVE ? 0 : found->value[quantity] / found->size_m;
+}
+
+/* Computes G by the parameters of the frame, and H by the free ones, factored. Returns HF_OK or HF_SINGULAR. */
 static hf_status factor(hf_cloud *c, const hf_fit_frame *f, double *G)
 {
-    hf_fit_hessian(f, G, c->pose.factor);
-    return hf_dense_factor(c->pose.found.n, c->pose.factor, c->pose.pivot) == 0 ? HF_OK : HF_SINGULAR;
+    hf_cloud_pose *q = &c->pose;
+    int n = q->found.n, n_all = f->found->n;
+    double H[N_MOST * N_MOST];
+    hf_fit_hessian(f, G, H);
+    for (int k = 0; k < n; k++) {
+        memcpy(q->factor + k * n, H + k * n_all, (size_t)n * sizeof *H);
+        q->pull_size[k] = 0;
+        for (int held = n; held < n_all; held++)
+            q->pull_size[k] += H[k * n_all + held] * grow_with_size(f->found, held);
+    }
+    return hf_dense_factor(n, q->factor, q->pivot) == 0 ? HF_OK : HF_SINGULAR;
 }
 
 /* Improves the fit by one Newton step. The fit ends when rounding keeps the sum of squares from falling. At that point
@@ -154,7 +170,7 @@ static hf_status factor(hf_cloud *c, const hf_fit_frame *f, double *G)
 static void polish(hf_cloud *c)
 {
     hf_fit_parameters *found = &c->pose.found;
-    hf_fit_frame f = frame_of(c);
+    hf_fit_frame f = frame_of(c, found);
     double step[N_MOST];
     if (factor(c, &f, step) != HF_OK) return;
     hf_dense_solve(found->n, c->pose.factor, c->pose.pivot, 1, step);
@@ -170,7 +186,7 @@ static hf_status fit_measure(hf_cloud *c)
     HF_TRY(hf_surface_fit_find(c->kind, c->focal_length_m, c->n, c->position_m, c->n_facet > 0 ? c->root_m : NULL, &fit,
                                &c->pose.found));
     if (fit.converged) polish(c);
-    hf_fit_frame f = frame_of(c);
+    hf_fit_frame f = frame_of(c, &c->pose.found);
     for (int i = 0; i < c->n; i++) {
         double arm[3], at[3], d[4];
         hf_fit_locate(&f, i, arm, at);
@@ -202,8 +218,10 @@ static void pull_of(hf_cloud *c, const hf_fit_frame *f, const hf_fit_point *p, i
 static hf_status fit_linearise(hf_cloud *c)
 {
     hf_cloud_pose *q = &c->pose;
-    hf_fit_frame f = frame_of(c);
+    hf_fit_parameters all = q->found;
     double G[N_MOST];
+    all.n += all.n_held;
+    hf_fit_frame f = frame_of(c, &all);
     HF_TRY(factor(c, &f, G));
     memset(q->pull_center, 0, sizeof q->pull_center);
     for (int i = 0; i < c->n; i++) {
@@ -214,6 +232,9 @@ static hf_status fit_linearise(hf_cloud *c)
             pull_of(c, &f, &p, i, k);
             q->slope[k * c->n + i] = hf_fit_dot(d, p.by[k]);
         }
+        q->slope_size[i] = 0;
+        for (int k = q->found.n; k < all.n; k++)
+            q->slope_size[i] += hf_fit_dot(d, p.by[k]) * grow_with_size(&all, k);
         for (int k = 0; k < 3; k++) {
             double by = d[0] * f.turn[0][k] + d[1] * f.turn[1][k] + d[2] * f.turn[2][k];
             c->slope[k * c->n + i] = by;
@@ -229,6 +250,7 @@ static void fit_push(hf_cloud *c, double *rate)
     const hf_cloud_pose *q = &c->pose;
     int n = q->found.n;
     double center[3] = {0}, change[N_MOST] = {0};
+    double size = q->found.n_held ? (c->move[q->found.size_end[1]] - c->move[q->found.size_end[0]]) / 2 : 0;
     for (int d = 0; d < 3; d++)
         for (int i = 0; i < c->n; i++)
             center[d] += c->move[d * c->n + i] / c->n;
@@ -240,6 +262,7 @@ static void fit_push(hf_cloud *c, double *rate)
         }
         for (int i = 0; i < c->n && c->n_facet > 0; i++)
             change[k] -= q->pull_area[k * c->n + i] * c->grow_m2[i];
+        change[k] -= q->pull_size[k] * size;
     }
     hf_dense_solve(n, q->factor, q->pivot, 1, change);
     for (int i = 0; i < c->n; i++) {
@@ -248,6 +271,7 @@ static void fit_push(hf_cloud *c, double *rate)
             rate[i] += c->slope[d * c->n + i] * c->move[d * c->n + i] + q->slope_center[d * c->n + i] * center[d];
         for (int k = 0; k < n; k++)
             rate[i] += q->slope[k * c->n + i] * change[k];
+        rate[i] += q->slope_size[i] * size;
     }
 }
 

@@ -20,6 +20,8 @@ typedef struct {
     double *pull;                              /* [parameter][3][n], derivatives of G by a point, about the centre */
     double *pull_area;                         /* [parameter][n], derivatives of G by the area of a point */
     double pull_center[HF_FIT_N_PARAMETER][3]; /* derivatives of G by the centre */
+    double *slope_size;                        /* [n], derivatives of the errors by the size, if shifts are held */
+    double pull_size[HF_FIT_N_PARAMETER];      /* derivatives of G by the size, because held shifts grow with it */
 } hf_cloud_pose;
 
 /* The arrays of hf_cloud for n points. n_area is n with facets, else 0. */

@@ -34,13 +34,17 @@
  * pass with a last step of 1e-16 and of 1e-12. */
 #define FIT_STEPS_MAX 100
 #define FIT_STEP_LEAST 1e-14
-/* Maximum accepted shift along x or y, in units of the size of the net. A fit with a larger shift has
- * replaced a turn by a shift, because of the errors of the points. The tests of the surface pass with 0.01;
- * with 1 one fails (fit_of_few_rough_nodes_stays). */
+/* Maximum shift along x or y, in units of the size of the net. A fit with a larger shift has replaced a turn by a shift,
+ * because of the errors of the points. The tests of the surface pass with 0.01; with 1 one fails
+ * (fit_of_few_rough_nodes_stays). */
 #define SHIFT_MOST 0.1
 /* Maximum ratio of fitted to target focal length, or of target to fitted. A larger ratio results from the errors of
  * nodes that show almost no curvature. The tests of the surface pass with 1.1 and with 5. */
 #define FOCAL_MOST 2.0
+/* A fit with a parameter at its bound is accepted if this parameter lowers the sum of squares by at least this factor,
+ * and if there are at least so many points. The errors of points alone lower it by less (METHOD section 9). */
+#define BOUND_WORTH 4.0
+#define BOUND_POINTS 24
 /* Bounds of a descent (METHOD section 9). */
 #define DESCENT_STEPS_MAX 60
 #define DESCENT_STEP_MOST 0.1 /* maximum step, for parameters of order one; keeps steps in their valley */
@@ -444,14 +448,18 @@ static void center(fit_problem *p)
 {
     for (int c = 0; c < 3; c++) {
         const double *x = p->position_m + (size_t)c * (size_t)p->n;
-        double low = x[0], high = x[0], sum = 0;
+        int low = 0, high = 0;
+        double sum = 0;
         for (int i = 0; i < p->n; i++) {
-            low = fmin(low, x[i]);
-            high = fmax(high, x[i]);
+            if (x[i] < x[low]) low = i;
+            if (x[i] > x[high]) high = i;
             sum += x[i];
         }
         p->at.center_m[c] = sum / p->n;
-        p->at.size_m = fmax(p->at.size_m, (high - low) / 2);
+        if (!((x[high] - x[low]) / 2 > p->at.size_m)) continue;
+        p->at.size_m = (x[high] - x[low]) / 2;
+        p->at.size_end[0] = c * p->n + low;
+        p->at.size_end[1] = c * p->n + high;
     }
     if (!(p->at.size_m > 0)) p->at.size_m = 1;
 }
@@ -541,13 +549,60 @@ static void set_unknown(hf_surface_fit *fit)
     fit->rotation_x_rad = fit->rotation_y_rad = fit->rotation_z_rad = (double)NAN;
 }
 
+/* Returns the bound that the value of a quantity exceeds, or the value itself. */
+static double within_bounds(int quantity, double value)
+{
+    if (quantity == HF_FIT_CURVE) return fmax(1 / FOCAL_MOST - 1, fmin(FOCAL_MOST - 1, value));
+    return shift_of(quantity) >= 0 && quantity != HF_FIT_SHIFT_Z ? fmax(-SHIFT_MOST, fmin(SHIFT_MOST, value)) : value;
+}
+
+/* Holds the first of the n parameters beyond its bounds at that bound, as the last of the n. Returns false if there is
+ * none. */
+static bool hold_one(hf_fit_parameters *at, int n)
+{
+    for (int k = 0; k < n; k++) {
+        int quantity = at->quantity[k];
+        double bound = within_bounds(quantity, at->value[quantity]);
+        if (bound == at->value[quantity]) continue;
+        at->value[quantity] = bound;
+        memmove(at->quantity + k, at->quantity + k + 1, (size_t)(n - 1 - k) * sizeof *at->quantity);
+        at->quantity[n - 1] = quantity;
+        return true;
+    }
+    return false;
+}
+
+/* Returns whether the sum of squares of `to` is so far below that of `from` that the points determine `to`. */
+static bool is_worth(const hf_surface_fit *from, const hf_surface_fit *to)
+{
+    return from->half_path_rms_m * from->half_path_rms_m >= BOUND_WORTH * to->half_path_rms_m * to->half_path_rms_m;
+}
+
+/* Holds those of n parameters at their bounds that exceed them in *fit, and fits the others. *is_determined becomes
+ * true if the result is worth more than the fit `from`. Without this fit, the errors would jump where a parameter
+ * reaches its bound. */
+static hf_status fit_at_bounds(fit_problem *p, int n, const hf_surface_fit *from, hf_surface_fit *fit,
+                               bool *is_determined)
+{
+    int n_free = n;
+    *is_determined = false;
+    if (!is_worth(from, fit)) return HF_OK; /* the fit without bounds is the better one */
+    while (hold_one(&p->at, n_free)) {
+        HF_TRY(fit_least(p, --n_free, fit));
+        if (!fit->converged) return HF_OK;
+    }
+    p->at.n_held = n - n_free;
+    *is_determined = n_free < n && is_worth(from, fit);
+    return HF_OK;
+}
+
 hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n, const double *position_m,
                               const double *root_weight, hf_surface_fit *fit, hf_fit_parameters *found)
 {
     bool is_round = kind == HF_SURFACE_PARABOLOID;
     fit_problem p = {kind, n, position_m, root_weight, 1 / (4 * focal_length_m), {0}};
+    hf_surface_fit rigid = {0}; /* the fit of the first stage, which has no bounds */
     *fit = (hf_surface_fit){0};
-    memcpy(p.at.quantity, is_round ? paraboloid_parameter : cylinder_parameter, sizeof p.at.quantity);
     center(&p);
     *found = p.at;
     fit->center_x_m = p.at.center_m[0];
@@ -558,14 +613,23 @@ hf_status hf_surface_fit_find(hf_surface_kind kind, double focal_length_m, int n
     for (int k = 0; k < 3; k++) {
         hf_surface_fit next = *fit;
         int n_parameter = (is_round ? paraboloid_fit : cylinder_fit)[k];
+        memcpy(p.at.quantity, is_round ? paraboloid_parameter : cylinder_parameter, sizeof p.at.quantity);
+        p.at.n_held = 0;
         HF_TRY(fit_least(&p, n_parameter, &next));
         double longer = next.focal_length_m / focal_length_m, across = fmax(fabs(next.shift_x_m), fabs(next.shift_y_m));
         bool is_determined =
             next.converged && across <= SHIFT_MOST * p.at.size_m && longer <= FOCAL_MOST && longer >= 1 / FOCAL_MOST;
         fit->iterations = next.iterations;
-        if (!is_determined) break;
+        if (!is_determined) {
+            /* shifts at their bounds must be worth more than the fit before, a focal length than the first fit */
+            bool is_focal = across <= SHIFT_MOST * p.at.size_m;
+            if (k == 0 || n < BOUND_POINTS) break;
+            HF_TRY(fit_at_bounds(&p, n_parameter, is_focal ? &rigid : fit, &next, &is_determined));
+            if (!is_determined) break;
+        }
         *fit = next;
         *found = p.at;
+        if (k == 0) rigid = next;
     }
     if (!fit->converged) set_unknown(fit);
     return HF_OK;

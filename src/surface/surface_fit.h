@@ -19,10 +19,12 @@ enum { HF_FIT_N_PARAMETER = 6 }; /* at most; each kind of surface is invariant u
 
 /* Parameters of a fit. In the frame of the fitted surface, a point p is at turn (p - center - shift) + center. */
 typedef struct {
-    int n;                            /* parameters that the points determine; 0: no fit */
-    int quantity[HF_FIT_N_PARAMETER]; /* [n], quantity of each parameter */
+    int n;                            /* free parameters that the points determine; 0: no fit */
+    int n_held;                       /* parameters held at the bounds of a fit */
+    int quantity[HF_FIT_N_PARAMETER]; /* [n + n_held], quantity of each parameter, free ones first */
     double value[HF_FIT_N_QUANTITY];  /* by quantity; 0 for those that are no parameters */
     double center_m[3], size_m;
+    int size_end[2]; /* coordinates, of [3][n], whose distance is twice size_m */
 } hf_fit_parameters;
 
 /* Computes turn = (Rx Ry Rz)' for three angles, or a derivative: order[k] is the order of the derivative by angle k,

@@ -1,6 +1,7 @@
 /* Measures of the surface, each compared with its definition written out again; the best fit of known motions. */
 #include "laws.h"
 
+#include "surface/cloud.h"
 #include "surface/surface_near.h"
 
 /* ---- the best fit ---- */
@@ -350,6 +351,106 @@ START_TEST(fit_from_one_nearby_knows_its_end)
 }
 END_TEST
 
+/* ---- the fit at its bounds ---- */
+
+/* Points of an offset paraboloid beside its axis, shifted by shift_m along x. Its size is 3 m, so that a fit may shift
+ * by 0.3 m. */
+static void shifted_points(double shift_m, double rough_m, double *p, double *root)
+{
+    struct rng rng = rng_start(470);
+    rough_points(&rng, HF_SURFACE_PARABOLOID, 5, 4, rough_m, p, root);
+    for (int k = 0; k < N_GRID; k++)
+        p[k] += shift_m;
+}
+
+/* Points that determine a shift beyond its bound have a fit with the shift at this bound, the best one of those within
+ * the bounds. The RMS has no jump where the shift reaches its bound. */
+START_TEST(fit_holds_a_shift_at_its_bound)
+{
+    double p[3 * N_GRID], root[N_GRID], before_m = 0;
+    for (double shift_m = 0.28; shift_m < 0.36; shift_m += 2e-3) {
+        hf_surface_fit fit;
+        hf_fit_parameters found;
+        shifted_points(shift_m, 1e-4, p, root);
+        ck_assert_int_eq(hf_surface_fit_find(HF_SURFACE_PARABOLOID, 5, N_GRID, p, root, &fit, &found), HF_OK);
+        ck_assert(fit.converged);
+        ck_assert_int_eq(found.n + found.n_held, HF_FIT_N_PARAMETER);
+        bool is_held = found.n_held > 0;
+        ck_assert(fabs(shift_m - 0.3) < 0.01 || is_held == (shift_m > 0.3)); /* errors move the minimum, too */
+        if (is_held) ck_assert_double_eq_tol(fit.shift_x_m, 0.1 * found.size_m, 1e-12);
+        if (before_m > 0) ck_assert_double_eq_tol(fit.half_path_rms_m, before_m, 2e-5);
+        before_m = fit.half_path_rms_m;
+    }
+    ck_assert_double_gt(before_m, 1e-5);
+}
+END_TEST
+
+/* Errors of the points that move the minimum beyond the bounds do not hold a fit there: neither a shift by noise, nor
+ * that of a few points, nor the focal length of two lines. */
+START_TEST(fit_holds_nothing_because_of_errors)
+{
+    double p[3 * N_GRID], root[N_GRID];
+    hf_surface_fit fit;
+    hf_fit_parameters found;
+    struct rng rng = rng_start(480 + (uint64_t)_i);
+    hf_surface_kind kind = _i % 2 ? HF_SURFACE_PARABOLOID : HF_SURFACE_PARABOLIC_CYLINDER;
+    int n_left = 0;
+    for (int i = 0; i < 20; i++) {
+        rough_points(&rng, kind, 8, 0, 0.03, p, root);
+        ck_assert_int_eq(hf_surface_fit_find(kind, 8, N_GRID, p, root, &fit, &found), HF_OK);
+        ck_assert_int_eq(found.n_held, 0);
+        n_left += found.n < HF_FIT_N_PARAMETER;
+    }
+    ck_assert_int_gt(n_left, 0);
+    enum { FEW = 20 };
+    shifted_points(0.35, 1e-6, p, root);
+    for (int d = 0; d < 3; d++)
+        memmove(p + d * FEW, p + d * N_GRID, FEW * sizeof *p);
+    ck_assert_int_eq(hf_surface_fit_find(HF_SURFACE_PARABOLOID, 5, FEW, p, NULL, &fit, &found), HF_OK);
+    ck_assert_int_eq(found.n_held, 0);
+}
+END_TEST
+
+/* The derivatives of the residuals are those of differences, whether the fit is free, its shift is at its bound,
+ * which moves with the points, or its focal length is at its bound, too. */
+START_TEST(derivatives_know_the_bounds_of_the_fit)
+{
+    static const double shift_m[] = {0.1, 0.33, 0}, focal_m[] = {5, 5, 2.3}, step = 1e-5;
+    double p[3 * N_GRID], root[N_GRID], move[3 * N_GRID], there[3 * N_GRID];
+    double residual[N_GRID], plus[N_GRID], minus[N_GRID], rate[N_GRID];
+    int row[N_GRID];
+    hf_arena arena = {0};
+    hf_cloud cloud = {.kind = HF_SURFACE_PARABOLOID,
+                      .focal_length_m = focal_m[_i],
+                      .along = HF_ALONG_HALF_PATH,
+                      .fit = HF_FIT_BEST,
+                      .n_node = N_GRID,
+                      .n = N_GRID,
+                      .row = row};
+    struct rng rng = rng_start(490 + (uint64_t)_i);
+    hf_cloud_lay_out(&arena, &cloud);
+    ck_assert_int_eq(hf_arena_allocate(&arena), HF_OK);
+    hf_cloud_lay_out(&arena, &cloud);
+    shifted_points(shift_m[_i], 1e-3, p, root);
+    for (int k = 0; k < N_GRID; k++)
+        row[k] = k;
+    for (int k = 0; k < 3 * N_GRID; k++)
+        move[k] = rng_uniform(&rng, -1, 1);
+    for (int side = 1; side >= -1; side--) {
+        for (int k = 0; k < 3 * N_GRID; k++)
+            there[k] = p[k] + side * step * move[k];
+        ck_assert_int_eq(hf_cloud_measure(&cloud, there, side > 0 ? plus : side < 0 ? minus : residual), HF_OK);
+        ck_assert_int_eq(cloud.pose.found.n_held, _i);
+        if (side != 0) continue;
+        ck_assert_int_eq(hf_cloud_linearise(&cloud), HF_OK);
+        hf_cloud_push(&cloud, move, rate);
+    }
+    for (int k = 0; k < N_GRID; k++)
+        ck_assert_double_eq_tol(rate[k], (plus[k] - minus[k]) / (2 * step), 1e-7);
+    hf_arena_free(&arena);
+}
+END_TEST
+
 /* ---- the measures ---- */
 
 static void open_reflector(struct net *net)
@@ -480,6 +581,9 @@ Suite *suite_unit_surface(void)
     tcase_add_test(tests, fit_without_an_answer_has_no_value);
     tcase_add_loop_test(tests, fit_from_one_nearby_is_the_reference, 0, 4);
     tcase_add_test(tests, fit_from_one_nearby_knows_its_end);
+    tcase_add_test(tests, fit_holds_a_shift_at_its_bound);
+    tcase_add_loop_test(tests, fit_holds_nothing_because_of_errors, 0, 2);
+    tcase_add_loop_test(tests, derivatives_know_the_bounds_of_the_fit, 0, 3);
     tcase_add_loop_test(tests, errors_are_those_of_their_definitions, 0, 2);
     tcase_add_test(tests, loss_beyond_the_formula_is_no_number);
     tcase_add_test(tests, drift_along_the_surface_is_no_error);
