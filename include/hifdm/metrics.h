@@ -15,6 +15,8 @@ HF_API_BEGIN
 /* Returns the RMS distance psi, in m, of the inner nodes from their target positions (Eqs. 9, 10). Loose nodes are not
  * included. If all inner nodes are loose, psi is NaN. */
 double hf_metrics_psi_m(const hf_model *model, const hf_workspace *workspace);
+/* Returns psi of the positions position_m [3][n_node] by row. loose [n_node]: nodes to leave out, or NULL for none. */
+double hf_metrics_psi_of_m(const hf_model *model, const double *position_m, const unsigned char *loose);
 
 /* Returns the ratio of the maximum to the minimum tension in a group of cables. Returns NaN if the group is empty or
  * contains a strut. If the group has a slack cable but no strut, the function returns INFINITY because the tension of a

@@ -21,6 +21,23 @@ extern const char *const hf_verdict_word[HF_VERDICT_N];
 
 #define HF_REQUIREMENT_ITEM_SIZE 256 /* size in bytes of the id of a cable or node */
 
+/* X(kind, type, member, size, description) defines a member of hf_requirement_verdict, in HDF5 and JSON, too. Values and
+ * margins are in the unit of the figure. */
+#define HF_VERDICT_LIST(X)                                                                                             \
+    X(REAL, double, value, , "of the nominal net, or of the share")                                                    \
+    X(REAL, double, bound, , "the bound that the value is nearer to")                                                  \
+    X(REAL, double, margin, , "signed distance of the value from that bound; negative: not met")                       \
+    X(REAL, double, relative_margin, , "margin relative to that bound; NaN: the bound is 0")                           \
+    X(REAL, double, error_bound, , "of the value of the nominal net; NaN: not known")                                  \
+    X(REAL, double, yield, , "share of the samples that meet the row")                                                 \
+    X(REAL, double, yield_low, , "95 % interval of the yield: its lower end")                                          \
+    X(REAL, double, yield_high, , "95 % interval of the yield: its upper end")                                         \
+    X(LONG, long, worst_sample, , "sample with the minimum margin, from 0; -1: the nominal net")                       \
+    X(REAL, double, worst_margin, , "margin of the worst net")                                                         \
+    X(REAL, double, worst_value, , "value of the worst net")                                                           \
+    X(CHARS, char, worst_load_case, [HF_SET_NAME_SIZE], "load case of the worst value")                                \
+    X(CHARS, char, worst_item, [HF_REQUIREMENT_ITEM_SIZE], "cable or support of the worst value; empty: none")
+
 /* Contains the verdict on a row. NaN means that a number does not exist or is not known.
  *
  * Without a share, `value` is the value of the nominal net with the minimum margin, and error_bound is the bound of its
@@ -31,15 +48,9 @@ extern const char *const hf_verdict_word[HF_VERDICT_N];
 typedef struct {
     hf_requirement_settings row; /* the row */
     hf_verdict verdict;
-    double value, bound; /* value, and the bound that it is nearer to, in the unit of the figure */
-    /* signed distance of the value from the bound; the same relative to the bound, NaN if the bound is 0 */
-    double margin, relative_margin;
-    double error_bound;                  /* of the value of the nominal net */
-    double yield, yield_low, yield_high; /* share of the samples that meet the row, and its confidence interval */
-    /* the worst net: number of the sample, -1 without a share; margin, value, load case, cable or support ("": none) */
-    long worst_sample;
-    double worst_margin, worst_value;
-    char worst_load_case[HF_SET_NAME_SIZE], worst_item[HF_REQUIREMENT_ITEM_SIZE];
+#define HF_VERDICT_MEMBER(kind, type, member, size, description) type member size;
+    HF_VERDICT_LIST(HF_VERDICT_MEMBER)
+#undef HF_VERDICT_MEMBER
 } hf_requirement_verdict;
 
 /* Returns the verdict on all n rows: fail if a row fails, else undecided if a row is undecided, else pass. Returns

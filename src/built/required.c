@@ -148,23 +148,6 @@ bool hf_required_needs_surface(const hf_required *q, bool is_many, int state)
 
 /* ---- figures of a shape ---- */
 
-static double psi_m(const hf_required_shape *s)
-{
-    const hf_model *m = s->model;
-    double sum = 0;
-    int n = 0;
-    for (int k = 0; k < m->n_inner_node; k++) {
-        int row = m->inner_row[k];
-        if (s->loose && s->loose[row]) continue;
-        n++;
-        for (int c = 0; c < 3; c++) {
-            double d = s->position_m[c * m->n_node + row] - m->position_m[c * m->n_node + row];
-            sum += d * d;
-        }
-    }
-    return n > 0 ? sqrt(sum / n) : (double)NAN;
-}
-
 double hf_required_extreme_N(const hf_required_column *c, const double *all_N, bool is_minimum, double *item)
 {
     double worst_N = is_minimum ? INFINITY : -INFINITY;
@@ -257,7 +240,7 @@ double hf_required_figure_of(const hf_required *q, const hf_required_column *c, 
     const hf_surface_paths *p = &s->paths;
     switch (c->figure) { /* no default label, so that the compiler reports a figure that is missing */
     case HF_REQUIRED_PSI:
-        return psi_m(s);
+        return hf_metrics_psi_of_m(s->model, s->position_m, s->loose);
     case HF_REQUIRED_SURFACE:
         return c->feed == HF_FIXED ? p->nodes_m : p->nodes_fit_m;
     case HF_REQUIRED_FACETS:

@@ -3,20 +3,25 @@
 
 #include <math.h>
 
-double hf_metrics_psi_m(const hf_model *m, const hf_workspace *w)
+double hf_metrics_psi_of_m(const hf_model *m, const double *position_m, const unsigned char *loose)
 {
     double sum = 0;
     int n = 0;
-    const double *x = w->position_m, *y = x + m->n_node, *z = y + m->n_node;
+    const double *x = position_m, *y = x + m->n_node, *z = y + m->n_node;
     const double *x0 = m->position_m, *y0 = x0 + m->n_node, *z0 = y0 + m->n_node;
     for (int k = 0; k < m->n_inner_node; k++) {
         int row = m->inner_row[k];
-        if (w->loose[row]) continue;
+        if (loose && loose[row]) continue;
         n++;
         double dx = x[row] - x0[row], dy = y[row] - y0[row], dz = z[row] - z0[row];
         sum += dx * dx + dy * dy + dz * dz;
     }
     return n > 0 ? sqrt(sum / n) : (double)NAN;
+}
+
+double hf_metrics_psi_m(const hf_model *m, const hf_workspace *w)
+{
+    return hf_metrics_psi_of_m(m, w->position_m, w->loose);
 }
 
 /* The minimum and maximum tension of the cables seen so far that are neither slack nor struts. */

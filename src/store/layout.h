@@ -10,6 +10,7 @@
  * list of members. A new enumeration is a new kind. */
 #pragma once
 
+#include "base/json.h"
 #include "store/hdf5.h"
 #include "store/renamed.h"
 
@@ -196,8 +197,10 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary);
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary);
 
 /* layout_requirements: the verdicts on the rows of `requirements`, in /requirements. Without verdicts nothing is
- * written. */
-void hf_layout_pass_requirements(hf_hdf5 *io, bool writes, hf_summary *summary);
+ * written. hf_layout_write_verdict writes the members of one verdict into a JSON object. */
+void hf_layout_put_requirements(hf_hdf5 *io, const hf_summary *summary);
+void hf_layout_get_requirements(hf_hdf5 *io, hf_summary *summary);
+void hf_layout_write_verdict(const hf_requirement_verdict *verdict, hf_json *json);
 
 /* layout_truss: hf_store_truss, hf_store_read_truss, and the parts of a truss in a load case. hf_layout_make_truss
  * makes the group `path` of a truss with its groups node and member, and returns it. */

@@ -1,7 +1,8 @@
-/* Writes and reads the verdicts on the rows of `requirements` in the group /requirements, by a table of
+/* Writes and reads the verdicts on the rows of `requirements`, in the group /requirements and as JSON, by one table of
  * fields. store_tolerance.c writes the figures of the samples. */
 #include "store/layout.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define GROUP "/requirements"
@@ -13,33 +14,25 @@ typedef struct {
     hf_requirement_verdict of;
 } judged;
 
-#define CHARS(name, member, description) HF_LAYOUT_MEMBER(judged, name, member, CHARS, "", description)
-#define REAL(name, member, description) HF_LAYOUT_MEMBER(judged, name, of.member, REAL, "", description)
-static const hf_layout_field judged_field[] = {
-    CHARS("figure", figure, "what the row bounds") CHARS("set", of.row.set, "cables; empty: all") CHARS(
-        "feed", feed, "feed of figures of the surface") REAL("frequency_Hz", row.frequency_Hz,
-                                                             "of gain_loss, gain and pointing; NaN: none")
-        CHARS("load_case", of.row.load_case, "nominal, all or the name of a load case") REAL(
-            "at_least", row.at_least, "minimum, in the unit of the figure; NaN: none")
-            REAL("at_most", row.at_most, "maximum, in the unit of the figure; NaN: none") REAL(
-                "share", row.share, "required share of the samples; 0: none is required; NaN: the nominal net")
-                CHARS("verdict", verdict, "pass, fail, undecided or none") REAL("value", value,
-                                                                                "of the nominal net, or of the share")
-                    REAL("bound", bound, "the bound that the value is nearer to")
-                        REAL("margin", margin, "signed distance of the value from that bound; negative: not met") REAL(
-                            "relative_margin", relative_margin, "margin relative to that bound; NaN: the bound is 0")
-                            REAL("error_bound", error_bound, "of the value of the nominal net; NaN: not known")
-                                REAL("yield", yield, "share of the samples that meet the row")
-                                    REAL("yield_low", yield_low, "95 % interval of the yield: its lower end") REAL(
-                                        "yield_high", yield_high, "95 % interval of the yield: its upper end")
-                                        HF_LAYOUT_MEMBER(judged, "worst_sample", of.worst_sample, LONG, "",
-                                                         "sample with the minimum margin, from 0; -1: the nominal net")
-                                            REAL("worst_margin", worst_margin, "margin of the worst net")
-                                                REAL("worst_value", worst_value, "value of the worst net")
-                                                    CHARS("worst_load_case", of.worst_load_case,
-                                                          "load case of the worst value")
-                                                        CHARS("worst_item", of.worst_item,
-                                                              "cable or support of the worst value; empty: none")};
+/* What the row says, by X(kind, member of judged, name, description). */
+#define ROW_LIST(X)                                                                                                    \
+    X(CHARS, verdict, "verdict", "pass, fail, undecided or none")                                                      \
+    X(CHARS, figure, "figure", "what the row bounds")                                                                  \
+    X(CHARS, of.row.set, "set", "cables; empty: all")                                                                  \
+    X(CHARS, feed, "feed", "feed of figures of the surface")                                                           \
+    X(REAL, of.row.frequency_Hz, "frequency_Hz", "of gain_loss, gain and pointing; NaN: none")                         \
+    X(CHARS, of.row.load_case, "load_case", "nominal, all or the name of a load case")                                 \
+    X(REAL, of.row.at_least, "at_least", "minimum, in the unit of the figure; NaN: none")                              \
+    X(REAL, of.row.at_most, "at_most", "maximum, in the unit of the figure; NaN: none")                                \
+    X(REAL, of.row.share, "share", "required share of the samples; 0: none is required; NaN: the nominal net")
+#define ROW(kind, member, name, description) HF_LAYOUT_MEMBER(judged, name, member, kind, "", description)
+#define MEMBER(kind, type, member, size, description) ROW(kind, of.member, #member, description)
+static const hf_layout_field judged_field[] = {ROW_LIST(ROW) HF_VERDICT_LIST(MEMBER)};
+#define ONE(kind, member, name, description) +1
+enum { N_ROW_FIELD = 0 ROW_LIST(ONE) }; /* those of the row come first */
+#undef ONE
+#undef MEMBER
+#undef ROW
 
 /* Returns the index of a word, or -1. */
 static int index_of(const char *word, int n, const char *const *words)
@@ -88,17 +81,49 @@ static void get_verdicts(hf_hdf5 *io, const judged *rows, hf_summary *s)
     }
 }
 
-void hf_layout_pass_requirements(hf_hdf5 *io, bool writes, hf_summary *s)
+void hf_layout_put_requirements(hf_hdf5 *io, const hf_summary *s)
 {
-    static judged rows[HF_REQUIREMENT_ROWS_MAX]; /* the lock of the store is held */
-    if (writes ? s->n_requirement == 0 : !hf_hdf5_has(io, io->file, GROUP "/verdict")) return;
-    memset(rows, 0, sizeof rows);
-    for (int i = 0; writes && i < s->n_requirement; i++)
+    if (s->n_requirement == 0) return;
+    judged *rows = hf_hdf5_take(io, (size_t)s->n_requirement, sizeof *rows);
+    for (int i = 0; rows && i < s->n_requirement; i++)
         put_verdict(&s->requirement[i], &rows[i]);
-    hid_t group = writes ? hf_hdf5_make_group(io, GROUP) : hf_hdf5_open_group(io, GROUP);
-    if (!writes) s->n_requirement = hf_hdf5_length(io, group, "verdict", HF_REQUIREMENT_ROWS_MAX);
-    if (!writes) s->requirement = hf_hdf5_take(io, HF_REQUIREMENT_ROWS_MAX, sizeof *s->requirement);
-    hf_layout_pass_fields(io, writes, group, HF_LAYOUT_TABLE(judged_field), s->n_requirement, 0, rows);
+    hid_t group = hf_hdf5_make_group(io, GROUP);
+    hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(judged_field), s->n_requirement, 0, rows);
     hf_hdf5_close(io, group);
-    if (!writes) get_verdicts(io, rows, s);
+    free(rows);
+}
+
+void hf_layout_get_requirements(hf_hdf5 *io, hf_summary *s)
+{
+    if (!hf_hdf5_has(io, io->file, GROUP "/verdict")) return;
+    hid_t group = hf_hdf5_open_group(io, GROUP);
+    s->n_requirement = hf_hdf5_length(io, group, "verdict", HF_REQUIREMENT_ROWS_MAX);
+    s->requirement = hf_hdf5_take(io, HF_REQUIREMENT_ROWS_MAX, sizeof *s->requirement);
+    judged *rows = hf_hdf5_take(io, HF_REQUIREMENT_ROWS_MAX, sizeof *rows);
+    hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(judged_field), s->n_requirement, 0, rows);
+    hf_hdf5_close(io, group);
+    get_verdicts(io, rows, s);
+    free(rows);
+}
+
+static void write_fields(const judged *row, int from, int to, hf_json *j)
+{
+    for (const hf_layout_field *f = judged_field + from; f < judged_field + to; f++) {
+        const void *value = (const char *)row + f->offset;
+        if (f->kind == HF_KIND_CHARS)
+            hf_json_text(j, f->name, value);
+        else if (f->kind == HF_KIND_LONG)
+            hf_json_integer(j, f->name, *(const long *)value);
+        else
+            hf_json_number(j, f->name, *(const double *)value);
+    }
+}
+
+void hf_layout_write_verdict(const hf_requirement_verdict *v, hf_json *j)
+{
+    judged row = {0};
+    put_verdict(v, &row);
+    write_fields(&row, 0, N_ROW_FIELD, j);
+    hf_json_text(j, "unit", hf_required_figure_unit[v->row.figure]);
+    write_fields(&row, N_ROW_FIELD, HF_HDF5_COUNT(judged_field), j);
 }

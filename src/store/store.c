@@ -357,7 +357,7 @@ static void put_summary(hf_store *s, const hf_summary *summary, bool finished)
     else if (summary->front)
         hf_layout_pass_objectives(io, true, summary); /* they name the objectives of the front */
     if (finished) hf_layout_put_tolerance(io, summary);
-    if (finished) hf_layout_pass_requirements(io, true, (hf_summary *)(uintptr_t)summary); /* only read */
+    if (finished) hf_layout_put_requirements(io, summary);
     if (finished) hf_vtkhdf_put_result(io, summary);
     if (finished) hf_renamed_link(io, s->rows.has_rows || hf_hdf5_has(io, io->file, "/variable/row"));
     hf_hdf5_put_chars(io, io->file, "/", "status", finished ? hf_status_word(summary->status) : "unfinished");

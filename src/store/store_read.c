@@ -46,7 +46,7 @@ static hf_status read_summary(const char *path, hf_summary *summary, bool *is_da
     hf_layout_pass_stages(&io, false, summary);
     hf_layout_get_front(&io, summary);
     hf_layout_get_tolerance(&io, summary);
-    hf_layout_pass_requirements(&io, false, summary);
+    hf_layout_get_requirements(&io, summary);
     if (io.status == HF_OK && ((int)summary->search.solver < 0 || summary->search.solver > HF_SOLVER_FIXED_POINT))
         hf_hdf5_damaged(&io, io.file, "/search", "names a solver that there is not");
     hf_store_close_result(&io);

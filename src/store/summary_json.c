@@ -270,31 +270,8 @@ static void write_verdicts(const hf_summary *s, hf_json *j)
     hf_json_text(j, "verdict", hf_verdict_word[hf_requirements_verdict(s->n_requirement, s->requirement)]);
     hf_json_open(j, "requirements", '[');
     for (int i = 0; i < s->n_requirement; i++) {
-        const hf_requirement_verdict *v = &s->requirement[i];
         hf_json_open_line(j, "  ", NULL, '{');
-        hf_json_text(j, "verdict", hf_verdict_word[v->verdict]);
-        hf_json_text(j, "figure", hf_required_figure_word[v->row.figure]);
-        hf_json_text(j, "set", v->row.set);
-        hf_json_text(j, "feed", hf_focus_word[v->row.feed]);
-        hf_json_number(j, "frequency_Hz", v->row.frequency_Hz);
-        hf_json_text(j, "load_case", v->row.load_case);
-        hf_json_number(j, "at_least", v->row.at_least);
-        hf_json_number(j, "at_most", v->row.at_most);
-        hf_json_number(j, "share", v->row.share);
-        hf_json_text(j, "unit", hf_required_figure_unit[v->row.figure]);
-        hf_json_number(j, "value", v->value);
-        hf_json_number(j, "bound", v->bound);
-        hf_json_number(j, "margin", v->margin);
-        hf_json_number(j, "relative_margin", v->relative_margin);
-        hf_json_number(j, "error_bound", v->error_bound);
-        hf_json_number(j, "yield", v->yield);
-        hf_json_number(j, "yield_low", v->yield_low);
-        hf_json_number(j, "yield_high", v->yield_high);
-        hf_json_integer(j, "worst_sample", v->worst_sample);
-        hf_json_number(j, "worst_margin", v->worst_margin);
-        hf_json_number(j, "worst_value", v->worst_value);
-        hf_json_text(j, "worst_load_case", v->worst_load_case);
-        hf_json_text(j, "worst_item", v->worst_item);
+        hf_layout_write_verdict(&s->requirement[i], j);
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
