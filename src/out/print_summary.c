@@ -72,7 +72,7 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
     if (!(raw_Hz < FREQUENCY_MOST_HZ)) return;
     fprintf(f, "; %g dB gain loss at ", HF_SURFACE_GOOD_TO_DB);
     if (fit_Hz < FREQUENCY_MOST_HZ) fprintf(f, "%.3g GHz for a refocused feed, at ", fit_Hz / 1e9);
-    fprintf(f, "%.3g GHz%s", raw_Hz / 1e9, m->is_measured ? " for a fixed feed" : "");
+    fprintf(f, "%.3g GHz for a fixed feed", raw_Hz / 1e9);
     fputs(has_facets       ? " (Ruze, from the facets)"
           : m->is_measured ? " (Ruze, from the nodes)"
                            : " (Ruze, from psi)",

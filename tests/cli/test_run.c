@@ -159,7 +159,8 @@ START_TEST(summary_begins_with_the_answer)
     ck_assert(!strchr(said.out, '\x1b')); /* colours are for terminals */
     const char *text = file_with("said.txt", said.out);
     EXPECT(text, out, "--", "('psi %.4f mm (' % (b['search'].attrs['psi_m'] * 1e3)).encode() == a[:15]",
-           "('; 1 dB gain loss at %.3g GHz (Ruze, from psi)' % (np.sqrt(np.log(10) / 10) * 299792458 / (4 * np.pi * "
+           "('; 1 dB gain loss at %.3g GHz for a fixed feed (Ruze, from psi)' % (np.sqrt(np.log(10) / 10) * 299792458 "
+           "/ (4 * np.pi * "
            "b['search'].attrs['psi_m']) / 1e9)).encode() in a.splitlines()[0]",
            "[w.split()[:3] for w in a.decode().splitlines()[4:7]] == [[n, '%.4f' % (o.attrs['psi_m'] * 1e3), "
            "'%.4f' % o.attrs['boundary_tension_ratio']] for n, o in (('form', b['form']), "
