@@ -21,8 +21,8 @@ extern const char *const hf_verdict_word[HF_VERDICT_N];
 
 #define HF_REQUIREMENT_ITEM_SIZE 256 /* size in bytes of the id of a cable or node */
 
-/* X(kind, type, member, size, description) defines a member of hf_requirement_verdict, in HDF5 and JSON, too. Values and
- * margins are in the unit of the figure. */
+/* X(kind, type, member, size, description) defines a member of hf_requirement_verdict, also in HDF5 and JSON. Values
+ * and margins are in the unit of the figure. */
 #define HF_VERDICT_LIST(X)                                                                                             \
     X(REAL, double, value, , "of the nominal net, or of the share")                                                    \
     X(REAL, double, bound, , "the bound that the value is nearer to")                                                  \
@@ -53,9 +53,24 @@ typedef struct {
 #undef HF_VERDICT_MEMBER
 } hf_requirement_verdict;
 
-/* Returns the verdict on all n rows: fail if a row fails, else undecided if a row is undecided, else pass. Returns
- * HF_VERDICT_NONE if no row has a verdict. */
-hf_verdict hf_requirements_verdict(int n, const hf_requirement_verdict *verdict);
+/* What verdicts amount to. Designs and points rank by it (METHOD section 14). */
+typedef struct {
+    int n_required, n_failed, n_undecided; /* numbers of rows with a verdict, of failed and of undecided ones */
+    /* Over the rows with a verdict. NaN: none has a relative margin, or only a row with the bound 0 fails, because a
+     * positive margin would deny the failure. */
+    double relative_margin_min;
+} hf_judgement;
+
+hf_judgement hf_requirements_judge(int n, const hf_requirement_verdict *verdict);
+
+/* Returns the verdict: fail if a row fails, else undecided if a row is undecided, else pass. Returns HF_VERDICT_NONE if
+ * no row has a verdict. */
+hf_verdict hf_judgement_verdict(const hf_judgement *judgement);
+
+/* Returns a negative number if a ranks before b, a positive one if it ranks after b, and 0 if they are equal. Fewer
+ * failed rows are better, then fewer undecided ones, then a larger minimum of the relative margins, which NaN leaves
+ * out. A judgement without a verdict ranks last, because it is not known to pass. */
+int hf_judgement_compare(const hf_judgement *a, const hf_judgement *b);
 
 /* Writes what a row is about to text[size], such as "tension of ties, all load cases, 95 % of samples". Returns
  * text. */

@@ -327,6 +327,12 @@ static int tightest_of(const hf_merged *m, int i)
     return -1;
 }
 
+/* Returns the judgement without its margin, which ranks points as one of the figures, because of rounding. */
+static hf_judgement counts_of(const hf_merged_judgement *j)
+{
+    return (hf_judgement){j->n_required, j->n_failed, j->n_undecided, (double)NAN};
+}
+
 static hf_merged_judgement judge(const hf_merged *m, int i)
 {
     hf_merged_judgement j = {.verdict = HF_VERDICT_NONE, .tightest = -1};
@@ -342,7 +348,8 @@ static hf_merged_judgement judge(const hf_merged *m, int i)
     j.n_undecided = count[HF_VERDICT_UNDECIDED];
     j.n_required = count[HF_VERDICT_PASS] + j.n_failed + j.n_undecided;
     if (j.n_required == 0) return j;
-    j.verdict = j.n_failed ? HF_VERDICT_FAIL : j.n_undecided ? HF_VERDICT_UNDECIDED : HF_VERDICT_PASS;
+    hf_judgement counts = counts_of(&j);
+    j.verdict = hf_judgement_verdict(&counts);
     j.tightest = tightest_of(m, i);
     return j;
 }
@@ -354,14 +361,11 @@ bool hf_merged_is_judged(const hf_merged *m)
     return false;
 }
 
-/* Returns a negative number if point i ranks before point j by its verdicts, a positive one if after, 0 if they are
- * equal. A point without a verdict ranks last, because it is not known to pass. */
+/* Compares two points by their verdicts, as hf_judgement_compare does. */
 static int compare_verdicts(const hf_merged *m, int i, int j)
 {
-    hf_merged_judgement a = m->judgement[i], b = m->judgement[j];
-    bool has_a = a.verdict != HF_VERDICT_NONE, has_b = b.verdict != HF_VERDICT_NONE;
-    if (has_a != has_b) return has_a ? -1 : 1;
-    return a.n_failed != b.n_failed ? a.n_failed - b.n_failed : a.n_undecided - b.n_undecided;
+    hf_judgement a = counts_of(&m->judgement[i]), b = counts_of(&m->judgement[j]);
+    return hf_judgement_compare(&a, &b);
 }
 
 bool hf_merged_is_margin(const hf_merged *m, int figure)

@@ -109,28 +109,26 @@ static void print_row(const hf_requirement_verdict *v, int width, FILE *f)
 void hf_print_requirements(const hf_summary *s, hf_print_style style, FILE *f)
 {
     const hf_requirement_verdict *row[HF_REQUIREMENT_ROWS_MAX];
-    int n = s->n_requirement, count[HF_VERDICT_N] = {0}, width = 0, n_shown = 0;
+    int n = s->n_requirement, width = 0, n_shown = 0;
+    hf_judgement of = hf_requirements_judge(n, s->requirement);
     char name[256];
     if (n == 0) return;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         row[i] = &s->requirement[i];
-        count[row[i]->verdict]++;
-    }
     qsort(row, (size_t)n, sizeof *row, compare_rows);
-    n_shown = style.verbose ? n : count[HF_VERDICT_FAIL] + count[HF_VERDICT_UNDECIDED] + TIGHTEST_SHOWN;
+    n_shown = style.verbose ? n : of.n_failed + of.n_undecided + TIGHTEST_SHOWN;
     if (n_shown > n) n_shown = n;
     for (int i = 0; i < n_shown; i++) {
         int length = (int)strlen(hf_requirement_name(&row[i]->row, name, sizeof name));
         if (length > width) width = length;
     }
-    hf_verdict all = hf_requirements_verdict(n, s->requirement);
+    hf_verdict all = hf_judgement_verdict(&of);
     const char *colour = all == HF_VERDICT_FAIL ? HF_PRINT_RED : all == HF_VERDICT_UNDECIDED ? HF_PRINT_YELLOW : "";
     if (style.has_colour) fprintf(f, "%s%s", HF_PRINT_BOLD, colour);
-    fprintf(f, "verdict: %s; %d of %d requirements pass", hf_verdict_word[all], count[HF_VERDICT_PASS],
-            n - count[HF_VERDICT_NONE]);
-    if (count[HF_VERDICT_FAIL])
-        fprintf(f, ", %d fail%s", count[HF_VERDICT_FAIL], count[HF_VERDICT_FAIL] == 1 ? "s" : "");
-    if (count[HF_VERDICT_UNDECIDED]) fprintf(f, ", %d undecided", count[HF_VERDICT_UNDECIDED]);
+    fprintf(f, "verdict%s: %s; %d of %d requirements pass", s->front ? " on the form-finding" : "",
+            hf_verdict_word[all], of.n_required - of.n_failed - of.n_undecided, of.n_required);
+    if (of.n_failed) fprintf(f, ", %d fail%s", of.n_failed, of.n_failed == 1 ? "s" : "");
+    if (of.n_undecided) fprintf(f, ", %d undecided", of.n_undecided);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     for (int i = 0; i < n_shown; i++)
         print_row(row[i], width, f);

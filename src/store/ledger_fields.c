@@ -127,22 +127,14 @@ static int print_load_cases(const hf_summary *s, char *text, size_t size)
     return (int)used;
 }
 
-/* Writes the verdicts: "n_failed=1 n_undecided=0 relative_margin_min=-0.1 verdict_0=1 margin_0=-0.5 ...". The minimum
- * of the relative margins leaves out rows without a verdict and rows whose bound is 0. It is NaN without any other row,
- * and if only a row with the bound 0 fails, because a positive margin would deny the failure. Returns the length. */
+/* Writes the verdicts: "n_failed=1 n_undecided=0 relative_margin_min=-0.1 verdict_0=1 margin_0=-0.5 ...". Returns
+ * the length. */
 static int print_verdicts(const hf_summary *s, char *text, size_t size)
 {
-    int count[HF_VERDICT_N] = {0};
-    double least = (double)NAN;
     if (s->n_requirement == 0) return 0;
-    for (int i = 0; i < s->n_requirement; i++) {
-        const hf_requirement_verdict *v = &s->requirement[i];
-        count[v->verdict]++;
-        if (v->verdict != HF_VERDICT_NONE) least = fmin(least, v->relative_margin); /* fmin ignores NaN */
-    }
-    if (count[HF_VERDICT_FAIL] > 0 && least >= 0) least = (double)NAN;
-    size_t used = (size_t)snprintf(text, size, "n_failed=%d n_undecided=%d relative_margin_min=%.17g",
-                                   count[HF_VERDICT_FAIL], count[HF_VERDICT_UNDECIDED], least);
+    hf_judgement of = hf_requirements_judge(s->n_requirement, s->requirement);
+    size_t used = (size_t)snprintf(text, size, "n_failed=%d n_undecided=%d relative_margin_min=%.17g", of.n_failed,
+                                   of.n_undecided, of.relative_margin_min);
     for (int i = 0; i < s->n_requirement && used < size; i++) {
         const hf_requirement_verdict *v = &s->requirement[i];
         used += (size_t)snprintf(text + used, size - used, " verdict_%d=%d margin_%d=%.17g relative_margin_%d=%.17g", i,

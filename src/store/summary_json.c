@@ -267,7 +267,7 @@ static void write_verdicts(const hf_summary *s, hf_json *j)
 {
     if (s->n_requirement == 0) return;
     hf_json_line(j, " ");
-    hf_json_text(j, "verdict", hf_verdict_word[hf_requirements_verdict(s->n_requirement, s->requirement)]);
+    hf_json_text(j, "verdict", hf_verdict_word[hf_judgement_verdict(&all)]);
     hf_json_open(j, "requirements", '[');
     for (int i = 0; i < s->n_requirement; i++) {
         hf_json_open_line(j, "  ", NULL, '{');
@@ -279,6 +279,7 @@ static void write_verdicts(const hf_summary *s, hf_json *j)
 
 static void write_shares(const hf_tolerance_summary *t, hf_json *j)
 {
+    hf_judgement all = hf_requirements_judge(s->n_requirement, s->requirement);
     hf_json_open_line(j, "  ", "kind_share", '{');
     for (int k = 0; k < HF_TOLERANCE_KINDS; k++)
         if (t->kind_share[k] > 0) hf_json_number(j, hf_tolerance_kind_word[k], t->kind_share[k]);

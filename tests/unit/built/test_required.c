@@ -473,18 +473,43 @@ START_TEST(all_load_cases_and_both_bounds_count)
 }
 END_TEST
 
+static hf_verdict verdict_on(int n, const hf_requirement_verdict *v)
+{
+    hf_judgement of = hf_requirements_judge(n, v);
+    ck_assert_int_le(of.n_failed + of.n_undecided, of.n_required);
+    return hf_judgement_verdict(&of);
+}
+
 START_TEST(the_verdict_on_all_rows)
 {
     hf_requirement_verdict v[3] = {
         {.verdict = HF_VERDICT_NONE}, {.verdict = HF_VERDICT_NONE}, {.verdict = HF_VERDICT_NONE}};
-    ck_assert_int_eq(hf_requirements_verdict(0, v), HF_VERDICT_NONE);
-    ck_assert_int_eq(hf_requirements_verdict(2, v), HF_VERDICT_NONE);
+    ck_assert_int_eq(verdict_on(0, v), HF_VERDICT_NONE);
+    ck_assert_int_eq(verdict_on(2, v), HF_VERDICT_NONE);
     v[2].verdict = HF_VERDICT_PASS;
-    ck_assert_int_eq(hf_requirements_verdict(3, v), HF_VERDICT_PASS);
+    ck_assert_int_eq(verdict_on(3, v), HF_VERDICT_PASS);
     v[1].verdict = HF_VERDICT_UNDECIDED;
-    ck_assert_int_eq(hf_requirements_verdict(3, v), HF_VERDICT_UNDECIDED);
+    ck_assert_int_eq(verdict_on(3, v), HF_VERDICT_UNDECIDED);
     v[0].verdict = HF_VERDICT_FAIL;
-    ck_assert_int_eq(hf_requirements_verdict(3, v), HF_VERDICT_FAIL);
+    ck_assert_int_eq(verdict_on(3, v), HF_VERDICT_FAIL);
+}
+END_TEST
+
+/* In each pair, the first judgement ranks before the second one: by failed rows, then by undecided ones, then by the
+ * margin. One without a verdict ranks last. */
+START_TEST(judgements_rank_by_failures_first)
+{
+    static const hf_judgement pair[][2] = {
+        {{3, 0, 0, 0.1}, {3, 1, 0, 5}},   {{3, 0, 3, -1}, {3, 1, 0, 5}},      {{3, 1, 1, 0.1}, {3, 1, 2, 5}},
+        {{3, 0, 0, 0.2}, {3, 0, 0, 0.1}}, {{3, 1, 0, -0.1}, {3, 1, 0, -0.2}}, {{3, 2, 1, -5}, {0, 0, 0, 0}},
+    };
+    for (size_t k = 0; k < sizeof pair / sizeof *pair; k++) {
+        ck_assert_int_lt(hf_judgement_compare(&pair[k][0], &pair[k][1]), 0);
+        ck_assert_int_gt(hf_judgement_compare(&pair[k][1], &pair[k][0]), 0);
+        ck_assert_int_eq(hf_judgement_compare(&pair[k][0], &pair[k][0]), 0);
+    }
+    hf_judgement no_margin = {3, 0, 0, (double)NAN};
+    ck_assert_int_eq(hf_judgement_compare(&no_margin, &pair[0][0]), 0);
 }
 END_TEST
 
@@ -596,6 +621,7 @@ Suite *suite_unit_required(void)
     tcase_add_test(tests, a_margin_is_judged_by_its_error);
     tcase_add_test(tests, all_load_cases_and_both_bounds_count);
     tcase_add_test(tests, the_verdict_on_all_rows);
+    tcase_add_test(tests, judgements_rank_by_failures_first);
     tcase_add_loop_test(tests, quantile_and_yield_agree, 0, 60);
     suite_add_tcase(suite, tests);
     return suite;
