@@ -349,6 +349,23 @@ START_TEST(the_result_is_judged)
 }
 END_TEST
 
+/* The initial design has the lower psi and fails. A design that fails never becomes the result of the search while one
+ * passes, and the search keeps the best of those that pass. */
+START_TEST(generations_rank_by_requirements_first)
+{
+    const char *path = temp("a.h5"), *text = BUILT_SCENE
+                                     "optimize: {population: 20, generations: 30, seed: 3, method: %s}\n" ROWS
+                                     "  - {figure: tension, set: boundary, at_least: 24.6}\n";
+    static const char *const method[] = {"ga", "ga+lm"};
+    HIFDM(0, "run", file_with("c.yaml", formatted(text, method[_i])), "-o", path, "--strict");
+    OUT("verdict: pass; 1 of 1 requirements pass\n");
+    EXPECT(path, "--", "a['search/population/trial_status'][0, 0] != 0",
+           "a['form'].attrs['psi_m'] < a['search'].attrs['psi_m']",
+           "a['search'].attrs['psi_m'] == a['search/population/trial_psi_m'][:]"
+           "[a['search/population/trial_status'][:] == 0].min()");
+}
+END_TEST
+
 /* A strut is no slack cable, and a set with a strut has no ratio. */
 START_TEST(struts_are_not_slack)
 {
@@ -558,6 +575,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, strict_ends_with_its_own_status);
     tcase_add_test(tests, a_case_without_requirements_keeps_its_result);
     tcase_add_test(tests, the_result_is_judged);
+    tcase_add_loop_test(tests, generations_rank_by_requirements_first, 0, 2);
     tcase_add_test(tests, struts_are_not_slack);
     tcase_add_test(tests, a_bound_in_another_unit_is_doubted);
     tcase_add_test(tests, a_load_case_without_a_shape_fails_its_rows);
