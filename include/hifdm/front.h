@@ -11,6 +11,7 @@
 #pragma once
 
 #include <hifdm/api.h>
+#include <hifdm/requirements.h>
 #include <hifdm/settings.h>
 #include <hifdm/status.h>
 #include <stdbool.h>
@@ -36,10 +37,11 @@ typedef struct {
      * unit of the other objective. The slope is NaN for the objective `minimised` itself. If the method computes no
      * slope, all slopes are NaN. */
     double multiplier[HF_FRONT_OBJECTIVES_MAX];
-    hf_status status;   /* status of the design of this point */
-    hf_front_mark mark; /* whether the point is on the front, dominated or failed */
-    int steps;          /* number of steps of Levenberg-Marquardt; 0 for the genetic algorithm */
-    bool is_converged;  /* true: Levenberg-Marquardt has converged; false: there is no multiplier */
+    hf_status status;       /* status of the design of this point */
+    hf_front_mark mark;     /* whether the point is on the front, dominated or failed */
+    int steps;              /* number of steps of Levenberg-Marquardt; 0 for the genetic algorithm */
+    bool is_converged;      /* true: Levenberg-Marquardt has converged; false: there is no multiplier */
+    hf_judgement judgement; /* on the rows of `requirements` without a share; n_required is 0 if there are none */
 } hf_front_point;
 
 /* Contains a Pareto front and its designs. */
@@ -64,6 +66,10 @@ typedef struct {
     /* row of the knee, and row of the first minimum of each objective; -1: none */
     int knee, end[HF_FRONT_OBJECTIVES_MAX];
     double initial[HF_FRONT_OBJECTIVES_MAX]; /* objectives of the initial design */
+    /* point that ranks first (hf_front_suggested), counted from 0, or -1; its values */
+    int suggested;
+    hf_front_point first;
+    int n_verdict[HF_VERDICT_N];             /* number of points with each verdict; failed points have none */
     int n_unconverged;                       /* Levenberg-Marquardt: number of points whose design has not converged */
     double wall_s;                           /* wall-clock time of the computation */
     int index[HF_FRONT_POINTS_MAX];          /* index of each row in the front, counted from 0, in ascending order */
@@ -89,8 +95,13 @@ void hf_front_tabulate(const hf_front *front, hf_front_table *table);
 bool hf_front_agrees(const hf_front_table *table);
 
 /* Returns the number, counted from 1, of the point that the user should examine first. The point is the knee or, if the
- * front has no knee, an end of the front. Returns 0 if the Pareto front is empty. */
+ * front has no knee, an end of the front. If requirements have been judged, it is the point that ranks first by its
+ * verdicts (hf_judgement_compare). Points with equal numbers of failed and undecided requirements rank by whether they
+ * are on the front and have converged, before their margins. Returns 0 if the Pareto front is empty. */
 int hf_front_suggested(const hf_front_table *table);
+
+/* Returns true if points have verdicts on rows of `requirements`. */
+bool hf_front_is_judged(const hf_front_table *table);
 
 /* Returns true if the objectives a [n_objective] dominate the objectives b [n_objective]. If no objective in `a` is
  * larger than in `b` and at least one objective is smaller, `a` dominates `b`. */

@@ -1,11 +1,12 @@
 /* Writes a stored Pareto front as one CSV file:
  *
- *   id,mark,status,steps[,converged],NAME...,slope_NAME...,VARIABLE...
+ *   id,mark,status,steps[,converged][,requirements_failed,requirements_undecided,relative_margin_min],NAME...,
+ *   slope_NAME...,VARIABLE...
  *
- * converged (1 or 0) exists only for fronts by Levenberg-Marquardt. slope_NAME is the change of the minimised objective
- * per unit of objective NAME; it is empty where it is unknown. Points are numbered from 1 in the order of the front.
- * `hifdm evaluate` reads the file as a table of designs when the rows of failed points are removed. Numbers have 17
- * significant digits. */
+ * converged (1 or 0) exists only for fronts by Levenberg-Marquardt, the verdicts only for cases with requirements.
+ * slope_NAME is the change of the minimised objective per unit of objective NAME; it is empty where it is unknown. Points
+ * are numbered from 1 in the order of the front. `hifdm evaluate` reads the file as a table of designs when the rows of
+ * failed points are removed. Numbers have 17 significant digits. */
 #include "out/export.h"
 
 #include "base/csv.h"
@@ -34,7 +35,9 @@ static void write_front(const void *context, FILE *f)
 {
     const view *v = context;
     const hf_front *front = &v->front;
+    bool is_judged = hf_front_is_judged(v->summary->front);
     fputs(front->minimised >= 0 ? "id,mark,status,steps,converged" : "id,mark,status,steps", f);
+    if (is_judged) fputs(",requirements_failed,requirements_undecided,relative_margin_min", f);
     for (int k = 0; k < front->n_objective; k++)
         fprintf(f, ",%s", v->summary->objectives.name[k]);
     for (int k = 0; k < front->n_objective; k++)
@@ -48,6 +51,11 @@ static void write_front(const void *context, FILE *f)
         const hf_front_point *p = &front->point[i];
         fprintf(f, "%d,%s,%s,%d", i + 1, hf_front_mark_word[p->mark], hf_status_word(p->status), p->steps);
         if (front->minimised >= 0) fprintf(f, ",%d", p->is_converged);
+        if (is_judged && p->judgement.n_required == 0) fputs(",,,", f);
+        if (is_judged && p->judgement.n_required > 0) {
+            fprintf(f, ",%d,%d", p->judgement.n_failed, p->judgement.n_undecided);
+            write_number(p->judgement.relative_margin_min, f);
+        }
         for (int k = 0; k < front->n_objective; k++)
             write_number(p->objective[k], f);
         for (int k = 0; k < front->n_objective; k++)

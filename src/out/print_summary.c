@@ -256,7 +256,13 @@ static void print_search(const hf_summary *s, bool is_result, FILE *f)
     bool is_ga = !strcmp(hf_summary_algorithm(s, HF_STAGE_SEARCH), "ga");
     int n_at_bound = s->finished ? s->search.n_at_lower + s->search.n_at_upper : -1; /* counted at the end */
     print_figures(s, "search", &s->stage[HF_STAGE_SEARCH].result, n_at_bound, f);
-    fprintf(f, "  %s%s: ", is_result ? "the result, " : "", is_ga ? "GA" : "NSGA-II");
+    if (s->objectives.is_front)
+        fprintf(f, "  minimum %s, ", hf_ledger_objective(s->objectives.name[0]));
+    else if (is_result)
+        fputs("  the result, ", f);
+    else
+        fputs("  ", f);
+    fprintf(f, "%s: ", is_ga ? "GA" : "NSGA-II");
     hf_print_generations(&s->search, f);
     if (s->search.infeasible)
         fprintf(f, ", %ld of %ld designs infeasible", s->search.infeasible, s->search.evaluations);
@@ -434,10 +440,19 @@ static void print_slope_head(const hf_summary *s, int k, FILE *f)
             is_plain ? "" : " in ", is_plain ? "" : of, per, s->objectives.name[k]);
 }
 
+/* Prints the verdicts of a point: "; passes", "; fails 2 of 5" or "; 1 of 5 undecided". */
+static void print_front_verdict(const hf_judgement *of, FILE *f)
+{
+    hf_verdict verdict = hf_judgement_verdict(of);
+    if (verdict == HF_VERDICT_PASS) fputs("; passes", f);
+    if (verdict == HF_VERDICT_FAIL) fprintf(f, "; fails %d of %d", of->n_failed, of->n_required);
+    if (verdict == HF_VERDICT_UNDECIDED) fprintf(f, "; %d of %d undecided", of->n_undecided, of->n_required);
+}
+
 /* Prints one line of the front: the values of a point and, where known, the changes of the minimised objective per unit
- * of the others. number is that of the point, from 1; 0 for the initial design, which is no point. */
+ * of the others. number is that of the point, from 1. Without a point, it is the initial design. */
 static void print_front_values(const hf_summary *s, const char *name, int number, const double *objective,
-                               const double *multiplier, FILE *f)
+                               const hf_front_point *p, FILE *f)
 {
     const hf_front_table *t = s->front;
     char what[32];
@@ -445,19 +460,43 @@ static void print_front_values(const hf_summary *s, const char *name, int number
     fprintf(f, "                %-15s", what);
     for (int k = 0; k < t->n_objective; k++)
         hf_print_objective(k ? ", " : " ", s->objectives.name[k], objective[k], false, f);
-    for (int k = 0; k < t->n_objective && multiplier && t->minimised >= 0; k++) {
+    for (int k = 0; k < t->n_objective && p && t->minimised >= 0; k++) {
         const char *unit;
-        if (k == t->minimised || !isfinite(multiplier[k])) continue;
+        if (k == t->minimised || !isfinite(p->multiplier[k])) continue;
         double scale = front_unit(s, t->minimised, &unit) / front_unit(s, k, &unit);
-        fprintf(f, "; slope %.4g", multiplier[k] > 0 ? -multiplier[k] * scale : 0.0);
+        fprintf(f, "; slope %.4g", p->multiplier[k] > 0 ? -p->multiplier[k] * scale : 0.0);
     }
+    if (p) print_front_verdict(&p->judgement, f);
+    if (p && t->minimised >= 0 && !p->is_converged) fputs("; not converged", f);
     fputc('\n', f);
 }
 
 static void print_front_point(const hf_summary *s, const char *name, int row, FILE *f)
 {
     const hf_front_point *p = &s->front->row[row];
-    print_front_values(s, name, s->front->index[row] + 1, p->objective, p->multiplier, f);
+    print_front_values(s, name, s->front->index[row] + 1, p->objective, p, f);
+}
+
+/* Prints the point that ranks first by its verdicts, unless it is the knee or an end. */
+static void print_front_first(const hf_summary *s, FILE *f)
+{
+    const hf_front_table *t = s->front;
+    bool is_shown = t->knee >= 0 && t->index[t->knee] == t->suggested;
+    for (int k = 0; k < t->n_objective; k++)
+        is_shown |= t->end[k] >= 0 && t->index[t->end[k]] == t->suggested;
+    if (!is_shown) print_front_values(s, "first", t->suggested + 1, t->first.objective, &t->first, f);
+}
+
+/* Prints how many points pass. */
+static void print_front_verdicts(const hf_summary *s, FILE *f)
+{
+    const int *n = s->front->n_verdict;
+    int n_share = 0;
+    for (int i = 0; i < s->n_requirement; i++)
+        n_share += !isnan(s->requirement[i].row.share);
+    fprintf(f, "; requirements: %d pass, %d fail, %d undecided", n[HF_VERDICT_PASS], n[HF_VERDICT_FAIL],
+            n[HF_VERDICT_UNDECIDED]);
+    if (n_share) fprintf(f, ", %d row%s about samples not judged", n_share, n_share == 1 ? "" : "s");
 }
 
 /* Prints the numbers of points of the front and the units of the slopes. */
@@ -466,8 +505,9 @@ static void print_front_counts(const hf_summary *s, FILE *f)
     const hf_front_table *t = s->front;
     char rough[40] = "";
     if (t->n_unconverged > 0) snprintf(rough, sizeof rough, ", %d not converged", t->n_unconverged);
-    fprintf(f, "  front         %d points, %d dominated, %d failed%s; %s", t->n_point, t->n_dominated, t->n_failed,
-            rough, hf_print_duration(t->wall_s).text);
+    fprintf(f, "  front         %d points, %d dominated, %d failed%s", t->n_point, t->n_dominated, t->n_failed, rough);
+    if (hf_front_is_judged(t)) print_front_verdicts(s, f);
+    fprintf(f, "; %s", hf_print_duration(t->wall_s).text);
     for (int k = 0; k < t->n_objective && t->minimised >= 0; k++)
         if (k != t->minimised) print_slope_head(s, k, f);
     fputc('\n', f);
@@ -486,10 +526,11 @@ static void print_front(const hf_summary *s, const char *path, bool is_short, FI
     else
         print_front_counts(s, f);
     if (isfinite(t->initial[0]) && !is_short) print_front_values(s, "initial", 0, t->initial, NULL, f);
-    if (is_one) print_front_values(s, "best", t->index[t->end[0]] + 1, t->row[t->end[0]].objective, NULL, f);
+    if (is_one) print_front_point(s, "best", t->end[0], f);
     for (int k = 0; k < t->n_objective && !is_one && !is_short; k++)
         if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
     if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
+    if (hf_front_is_judged(t) && !is_short && !is_one) print_front_first(s, f);
     if (path && s->finished && point)
         hf_print_line(
             f, "                to make a point the result, run the same command with --point %s:%d -o point%d.h5",

@@ -1,6 +1,7 @@
 /* load_case_stage - the load cases of the as-built net that a case describes, once its design is known. */
 #pragma once
 
+#include "run/requirements_stage.h"
 #include <hifdm/built.h>
 #include <hifdm/problem.h>
 
@@ -32,5 +33,11 @@ hf_status hf_load_case_stage_rest_by_heat(const hf_problem *problem, double *mov
 /* Sets *all_s to the estimated processor time of all load cases at this shape, s. Further load cases are tried as long
  * as earlier ones took less than most_s. Returns HF_OK or the status that prevents load cases, without a message. */
 hf_status hf_load_case_stage_try(const hf_problem *problem, const hf_workspace *shape, double most_s, double *all_s);
+
+/* Measures what rows of `requirements` without a share need of the load cases, for the design whose shape `shape`
+ * holds. A load case without a shape has no values. Returns HF_OK, HF_BAD_CASE for a design that cannot be made, or
+ * HF_NO_MEMORY, with a message. */
+hf_status hf_load_case_stage_measure(const hf_problem *problem, const hf_workspace *shape,
+                                     hf_requirements_stage *requirements, hf_messages *messages);
 
 void hf_load_case_stage_free(hf_load_case_stage *cases);

@@ -104,9 +104,14 @@ hf_status hf_requirements_stage_open(const hf_problem *p, hf_requirements_stage 
     size_t n = (size_t)q->required.n_state * (size_t)q->required.n_column;
     if (HF_ARENA_ARRAYS(&q->block, HF_ARRAY(q->value, n), HF_ARRAY(q->item, n), HF_ARRAY(q->error, n)) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the requirements");
-    for (size_t k = 0; k < n; k++)
-        q->value[k] = q->item[k] = q->error[k] = (double)NAN;
+    hf_requirements_stage_forget(q);
     return HF_OK;
+}
+
+void hf_requirements_stage_forget(hf_requirements_stage *q)
+{
+    for (int k = 0; k < q->required.n_state * q->required.n_column; k++)
+        q->value[k] = q->item[k] = q->error[k] = (double)NAN;
 }
 
 void hf_requirements_stage_free(hf_requirements_stage *q)
@@ -176,6 +181,19 @@ static hf_status make_verdicts(const hf_requirements_stage *q, hf_summary *s, hf
     return HF_OK;
 }
 
+hf_status hf_requirements_stage_judge_design(const hf_requirements_stage *q, hf_judgement *to)
+{
+    hf_requirement_verdict *v = calloc((size_t)q->required.n, sizeof *v);
+    if (!v) return HF_NO_MEMORY;
+    for (int i = 0; i < q->required.n; i++) {
+        v[i] = (hf_requirement_verdict){.row = q->required.row[i], .verdict = HF_VERDICT_NONE};
+        if (isnan(v[i].row.share)) hf_required_judge_nominal(&q->required, i, q->value, q->item, q->error, &v[i]);
+    }
+    *to = hf_requirements_judge(q->required.n, v);
+    free(v);
+    return HF_OK;
+}
+
 hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *q, const hf_montecarlo *t,
                                               const hf_statistics_rows *rows, hf_summary *s, hf_messages *messages)
 {
@@ -205,7 +223,8 @@ hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
     hf_requirements_stage *q = &r->requirements;
     const hf_required *of = &q->required;
     if (hf_tolerance_stage_is_task(r->request) || !r->shape) return HF_OK;
-    hf_stage stage = hf_store_result_stage(s);
+    /* a front is no design, so that load cases and samples are those of the form-finding, too */
+    hf_stage stage = r->front.n_point ? HF_STAGE_FORM : hf_store_result_stage(s);
     const hf_stage_summary *result = &s->stage[stage == HF_N_STAGE ? HF_STAGE_FORM : stage];
     HF_TRY(hf_requirements_stage_take(q, 0, &r->problem.model, r->shape, &result->result, &result->surface, messages));
     if (of->n_share == 0) HF_TRY(make_verdicts(q, s, messages));

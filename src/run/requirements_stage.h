@@ -35,6 +35,12 @@ hf_status hf_requirements_stage_take(hf_requirements_stage *stage, int state, co
                                      const hf_workspace *workspace, const hf_form_result *result,
                                      const hf_surface_measures *surface, hf_messages *messages);
 
+/* Forgets what was measured, before another design is. */
+void hf_requirements_stage_forget(hf_requirements_stage *stage);
+
+/* Judges the design measured last by the rows without a share. Returns HF_OK or HF_NO_MEMORY. */
+hf_status hf_requirements_stage_judge_design(const hf_requirements_stage *stage, hf_judgement *judgement);
+
 /* Gives the verdicts on the rows with a share. Returns the status of hf_statistics_judge. */
 hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *stage, const hf_montecarlo *montecarlo,
                                               const hf_statistics_rows *rows, hf_summary *summary,

@@ -10,6 +10,7 @@
 #include "run/problem_parts.h"
 #include "search/front_refine.h"
 #include "search/pareto.h"
+#include "solve/certificate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -56,6 +57,53 @@ static void explain_no_front(const hf_problem *p, hf_status status, int end, cha
         snprintf(text, size, "optimize.front: Levenberg-Marquardt found no front: %s%s", why, hint);
 }
 
+/* ---- requirements ---- */
+
+/* Gives the verdicts of one point on the rows without a share. */
+static hf_status judge_point(hf_run *r, hf_requirements_stage *q, const double *design, hf_front_point *point,
+                             hf_messages *messages)
+{
+    hf_problem *p = &r->problem;
+    const hf_model *m = &p->model;
+    hf_form_result result;
+    hf_surface_measures measures = {0};
+    hf_messages unread = {0};
+    hf_workspace *w = hf_batch_run_one(&p->batch, design, &result);
+    if (!hf_status_has_shape(result.status)) return HF_OK;
+    hf_requirements_stage_forget(q);
+    hf_certify(m, w, &result);
+    hf_status status = HF_OK;
+    if (hf_required_needs_surface(&q->required, false, 0))
+        status = hf_surface_measure(&p->surface, &p->facets, m, w->position_m, w->tension_N, &measures);
+    if (status == HF_OK) status = hf_requirements_stage_take(q, 0, m, w, &result, &measures, &unread);
+    if (status == HF_OK) status = hf_load_case_stage_measure(p, w, q, &unread);
+    hf_messages_free(&unread);
+    /* a design that cannot be made fails in load cases */
+    if (status != HF_NO_MEMORY) status = hf_requirements_stage_judge_design(q, &point->judgement);
+    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the requirements");
+}
+
+/* Gives the verdicts of all points on the rows of `requirements` without a share. Rows about samples cost as much as a
+ * whole run for each point, so only the point that becomes a result has their verdicts. */
+static hf_status judge_front(hf_run *r, hf_front *front, hf_messages *messages)
+{
+    hf_requirements_stage q;
+    bool has_any = r->requirements.required.nominal != 0;
+    hf_status status = HF_OK;
+    if (!has_any) return HF_OK;
+    status = hf_requirements_stage_open(&r->problem, &q, messages);
+    for (int i = 0; i < front->n_point && status == HF_OK; i++) {
+        if (hf_run_must_stop(r)) status = HF_INTERRUPTED;
+        if (status == HF_OK && front->point[i].status == HF_OK)
+            status =
+                judge_point(r, &q, front->design + (size_t)i * (size_t)front->n_variable, &front->point[i], messages);
+    }
+    hf_requirements_stage_free(&q);
+    return status;
+}
+
+/* ---- the front ---- */
+
 /* Writes the table of the front into the summary, warns about points that failed, and stores the front. wall_s is the
  * time that it took, s. */
 static hf_status keep_front(hf_run *r, double wall_s, hf_summary *s, hf_messages *messages)
@@ -64,6 +112,7 @@ static hf_status keep_front(hf_run *r, double wall_s, hf_summary *s, hf_messages
     memcpy(front->initial, s->stage[HF_STAGE_FORM].result.objective, sizeof front->initial);
     if (!s->front) s->front = calloc(1, sizeof *s->front);
     if (!s->front) return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
+    HF_TRY(judge_front(r, front, messages));
     hf_front_tabulate(front, s->front);
     s->front->wall_s = wall_s;
     if (s->front->n_failed > 0) {

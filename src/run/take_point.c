@@ -105,6 +105,24 @@ static bool has_variables(const hf_problem *p, const stored_front *f)
     return is_same;
 }
 
+/* Warns about a point whose verdict is worse than that of another one, and about one that has not converged. */
+static void doubt_point(const stored_front *f, const hf_front_origin *taken, hf_messages *messages)
+{
+    const hf_front_point *point = &f->front.point[taken->point - 1];
+    const hf_front_table *t = f->summary->front;
+    const hf_judgement *of = &point->judgement;
+    if (hf_judgement_verdict(of) == HF_VERDICT_FAIL && of->n_failed > t->first.judgement.n_failed)
+        hf_warning(messages, "%s: point %d fails %d of %d requirements, but point %d fails %d. Use --point %s:%d",
+                   taken->path, taken->point, of->n_failed, of->n_required, hf_front_suggested(t),
+                   t->first.judgement.n_failed, taken->path, hf_front_suggested(t));
+    if (f->front.minimised >= 0 && !point->is_converged)
+        hf_warning(
+            messages,
+            "%s: point %d of the front has not converged, so better designs exist near it. Choose another point, "
+            "or raise optimize.refine_steps and compute the front again",
+            taken->path, taken->point);
+}
+
 static hf_status check_point(const hf_problem *p, const stored_front *f, const hf_front_origin *taken,
                              hf_messages *messages)
 {
@@ -127,6 +145,7 @@ static hf_status check_point(const hf_problem *p, const stored_front *f, const h
             messages,
             "%s: point %d is dominated, because another point of the front is at least as good in all objectives",
             taken->path, taken->point);
+    doubt_point(f, taken, messages);
     return HF_OK;
 }
 

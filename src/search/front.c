@@ -12,6 +12,8 @@
 #include <math.h>
 #include <string.h>
 
+#define SAME_MARGIN 1e-6 /* relative margins that differ by less are equal */
+
 #define WORD(name, word) word,
 const char *const hf_front_mark_word[HF_FRONT_N_MARK + 1] = {HF_FRONT_MARKS(WORD) NULL};
 #undef WORD
@@ -183,8 +185,35 @@ bool hf_front_agrees(const hf_front_table *t)
 
 int hf_front_suggested(const hf_front_table *t)
 {
-    int row = t->knee >= 0 ? t->knee : t->end[0];
-    return row < 0 ? 0 : t->index[row] + 1;
+    return t->suggested + 1;
+}
+
+bool hf_front_is_judged(const hf_front_table *t)
+{
+    return t->n_verdict[HF_VERDICT_NONE] < t->n_point - t->n_failed;
+}
+
+/* Returns whether point a ranks before point b by its verdicts. Margins that differ by rounding are equal. */
+static bool ranks_before(const hf_front *f, const hf_front_point *a, const hf_front_point *b)
+{
+    hf_judgement p = a->judgement, q = b->judgement;
+    bool is_equal = fabs(p.relative_margin_min - q.relative_margin_min) <= SAME_MARGIN;
+    p.relative_margin_min = q.relative_margin_min = (double)NAN;
+    int order = hf_judgement_compare(&p, &q);
+    if (order) return order < 0;
+    if (a->mark != b->mark) return a->mark == HF_FRONT_ON;
+    if (f->minimised >= 0 && a->is_converged != b->is_converged) return a->is_converged;
+    return !is_equal && hf_judgement_compare(&a->judgement, &b->judgement) < 0;
+}
+
+/* Returns the point that ranks first: `usual`, the knee or an end, unless another point ranks before it by its
+ * verdicts. */
+static int find_first(const hf_front *f, int usual)
+{
+    int first = usual;
+    for (int i = 0; i < f->n_point && first >= 0 && f->point[first].judgement.n_required > 0; i++)
+        if (f->point[i].status == HF_OK && ranks_before(f, &f->point[i], &f->point[first])) first = i;
+    return first;
 }
 
 /* Returns the row of the table that holds point `index` of the front, or -1. */
@@ -213,6 +242,11 @@ void hf_front_tabulate(const hf_front *f, hf_front_table *t)
         t->n_unconverged += f->point[i].status == HF_OK && !f->point[i].is_converged;
     t->minimised = f->minimised;
     memcpy(t->initial, f->initial, sizeof t->initial);
+    memset(t->n_verdict, 0, sizeof t->n_verdict);
+    for (int i = 0; i < f->n_point; i++)
+        if (f->point[i].status == HF_OK) t->n_verdict[hf_judgement_verdict(&f->point[i].judgement)]++;
+    t->suggested = find_first(f, f->knee >= 0 ? f->knee : end[0]);
+    if (t->suggested >= 0) t->first = f->point[t->suggested];
     choose_rows(f, end, t);
     t->knee = row_of(t, f->knee);
     for (int k = 0; k < HF_FRONT_OBJECTIVES_MAX; k++)

@@ -26,6 +26,14 @@ static const hf_layout_field point_field[N_FIELD] = {
                         POINT("converged", is_converged, FLAG,
                               "is it an optimum of Levenberg-Marquardt, as far as steps show?")};
 
+/* Data sets of the verdicts, in files of runs whose rows of `requirements` were judged. */
+static const hf_layout_field judgement_field[] = {
+    POINT("requirements", judgement.n_required, INT, "number of rows without a share, which were judged")
+        POINT("requirements_failed", judgement.n_failed, INT, "number of them that fail")
+            POINT("requirements_undecided", judgement.n_undecided, INT, "number of them that are undecided")
+                POINT("relative_margin_min", judgement.relative_margin_min, REAL,
+                      "smallest relative margin of them; NaN: none has one")};
+
 static void list_fields(int n_objective, hf_layout_field field[N_FIELD])
 {
     memcpy(field, point_field, sizeof point_field);
@@ -67,6 +75,8 @@ hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model 
     hf_hdf5_write_list(io, group, "initial", HF_KIND_REAL, k, 0, "", "objectives of the initial design",
                        front->initial);
     hf_layout_pass_fields(io, true, group, field, N_FIELD, n, 0, front->point);
+    if (hf_front_is_judged(s->front))
+        hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(judgement_field), n, 0, front->point);
     hf_hdf5_write_array(io, group, &design, front->design);
     write_variables(io, group, scene, m);
     hf_hdf5_put(io, group, ".", "n_on", HF_KIND_INT, 0, &s->front->n_on);
@@ -100,6 +110,8 @@ static void read_front(hf_hdf5 *io, hid_t group, int n_variable, hf_front *front
     for (int i = 0; i < n_point && io->status == HF_OK; i++)
         front->point[i] = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
     hf_layout_pass_fields(io, false, group, field, N_FIELD, n_point, 0, front->point);
+    if (hf_hdf5_has(io, group, "requirements"))
+        hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(judgement_field), n_point, 0, front->point);
     if (io->status == HF_OK && (!is_index(front->minimised, n_objective) || !is_index(front->knee, n_point)))
         hf_hdf5_damaged(io, group, ".", "has a knee or a minimised objective that is not there");
 }

@@ -179,6 +179,12 @@ static void write_front(const hf_summary *s, hf_json *j)
     hf_json_integer(j, "n_dominated", t->n_dominated);
     hf_json_integer(j, "n_failed", t->n_failed);
     if (t->minimised >= 0) hf_json_integer(j, "n_not_converged", t->n_unconverged);
+    if (hf_front_is_judged(t)) {
+        hf_json_integer(j, "n_pass", t->n_verdict[HF_VERDICT_PASS]);
+        hf_json_integer(j, "n_fail", t->n_verdict[HF_VERDICT_FAIL]);
+        hf_json_integer(j, "n_undecided", t->n_verdict[HF_VERDICT_UNDECIDED]);
+        hf_json_integer(j, "first", hf_front_suggested(t));
+    }
     if (t->minimised >= 0) hf_json_text(j, "minimised", s->objectives.name[t->minimised]);
     if (t->knee >= 0) hf_json_integer(j, "knee", t->knee);
     hf_json_number(j, "wall_s", t->wall_s);
@@ -195,6 +201,13 @@ static void write_front(const hf_summary *s, hf_json *j)
         hf_json_text(j, "mark", hf_front_mark_word[p->mark]);
         hf_json_integer(j, "steps", p->steps);
         if (t->minimised >= 0) hf_json_bool(j, "converged", p->is_converged);
+        if (p->judgement.n_required > 0) {
+            hf_json_text(j, "verdict", hf_verdict_word[hf_judgement_verdict(&p->judgement)]);
+            hf_json_integer(j, "requirements", p->judgement.n_required);
+            hf_json_integer(j, "requirements_failed", p->judgement.n_failed);
+            hf_json_integer(j, "requirements_undecided", p->judgement.n_undecided);
+            hf_json_number(j, "relative_margin_min", p->judgement.relative_margin_min);
+        }
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -266,6 +279,7 @@ static void write_requirements(const hf_tolerance_summary *t, hf_json *j)
 static void write_verdicts(const hf_summary *s, hf_json *j)
 {
     if (s->n_requirement == 0) return;
+    hf_judgement all = hf_requirements_judge(s->n_requirement, s->requirement);
     hf_json_line(j, " ");
     hf_json_text(j, "verdict", hf_verdict_word[hf_judgement_verdict(&all)]);
     hf_json_open(j, "requirements", '[');
@@ -279,7 +293,6 @@ static void write_verdicts(const hf_summary *s, hf_json *j)
 
 static void write_shares(const hf_tolerance_summary *t, hf_json *j)
 {
-    hf_judgement all = hf_requirements_judge(s->n_requirement, s->requirement);
     hf_json_open_line(j, "  ", "kind_share", '{');
     for (int k = 0; k < HF_TOLERANCE_KINDS; k++)
         if (t->kind_share[k] > 0) hf_json_number(j, hf_tolerance_kind_word[k], t->kind_share[k]);

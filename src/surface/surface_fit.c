@@ -34,8 +34,8 @@
  * pass with a last step of 1e-16 and of 1e-12. */
 #define FIT_STEPS_MAX 100
 #define FIT_STEP_LEAST 1e-14
-/* Maximum shift along x or y, in units of the size of the net. A fit with a larger shift has replaced a turn by a shift,
- * because of the errors of the points. The tests of the surface pass with 0.01; with 1 one fails
+/* Maximum shift along x or y, in units of the size of the net. A fit with a larger shift has replaced a turn by a
+ * shift, because of the errors of the points. The tests of the surface pass with 0.01; with 1 one fails
  * (fit_of_few_rough_nodes_stays). */
 #define SHIFT_MOST 0.1
 /* Maximum ratio of fitted to target focal length, or of target to fitted. A larger ratio results from the errors of

@@ -17,7 +17,8 @@ START_TEST(a_front_is_printed_stored_and_told)
     ck_assert(!strstr(said.out, "merit") && !strstr(said.out, "weight") && !strstr(said.out, " writes all"));
     OUT("                initial         objective_0_psi 6.60003 mm, objective_1_ratio_boundary 4.84161\n");
     OUT("                end, point 1    objective_0_psi 4.28338 mm, objective_1_ratio_boundary 5.23668; slope 0\n");
-    OUT("                end, point 7    objective_0_psi 11.6996 mm, objective_1_ratio_boundary 4.55962\n");
+    OUT("                end, point 7    objective_0_psi 11.6996 mm, objective_1_ratio_boundary 4.55962; not "
+        "converged\n");
     OUT("                knee, point 4   objective_0_psi ");
     printed = keep(said.out);
     HIFDM(0, "show", file);
@@ -41,6 +42,69 @@ START_TEST(a_front_is_printed_stored_and_told)
            "b['front']['knee'] == a['front'].attrs['knee']",
            "a['front/design'].shape == (7, 74) and a['front/design'].attrs['units'] == 'N'",
            "np.all(np.diff(a['front/objective'][:, 0]) > 0) and np.all(np.diff(a['front/objective'][:, 1]) < 0)");
+}
+END_TEST
+
+#define ROWS                                                                                                           \
+    "--set", "cables=[{expansion_per_K: 1e-5}]", "--set", "load_cases=[{name: cold, temperature_K: -20}]", "--set",    \
+        "requirements=[{figure: psi, at_most: 5.2e-3, search: off}, {figure: tension, set: boundary, at_least: 9.6, "  \
+        "search: off}, {figure: slack_cables, at_most: 0, load_case: all, search: off}]"
+
+/* The points of a front have the verdicts that runs of these points have. A point that fails is not the first one while
+ * another passes. A point that fails, or has not converged, does not become a result without a warning. */
+START_TEST(points_of_a_front_have_verdicts)
+{
+    const char *file = temp("f.h5"), *point = temp("p.h5"), *json;
+    HIFDM(0, "run", FRONT, ROWS, "-o", file, "--verbose");
+    OUT("verdict on the form-finding: fail; 2 of 3 requirements pass, 1 fails\n");
+    OUT("; fails 1 of 3; not converged\n");
+    OUT("; passes\n");
+    OUT("; requirements: 4 pass, 3 fail, 0 undecided; ");
+    OUT("                first, point ");
+    HIFDM(0, "show", file, "--json");
+    json = out_as("s.json");
+    EXPECT(file, json, "--", "(a['front/requirements'][:] == 3).all()",
+           "(a['front/requirements_undecided'][:] == 0).all()",
+           "(a['front/requirements_failed'][:] == (a['front/objective'][:, 0] > 5.2e-3)).all()",
+           "[p['verdict'] for p in b['front']['points']] == ['fail' if k else 'pass' for k in "
+           "a['front/requirements_failed'][:]]",
+           "b['front']['n_pass'] == sum(a['front/requirements_failed'][:] == 0) and b['front']['n_pass'] + "
+           "b['front']['n_fail'] == 7",
+           "[p['relative_margin_min'] for p in b['front']['points']] == list(a['front/relative_margin_min'][:])",
+           "b['front']['first'] == 1 + np.argmax(a['front/relative_margin_min'][:])");
+    for (int i = 1; i <= 7; i += 3) { /* an end, the knee, and the other end, which has not converged */
+        HIFDM(0, "run", FRONT, ROWS, "--point", formatted("%s:%d", file, i), "-o", point, "--restart");
+        ck_assert(!strstr(said.err, "fails 1 of 3 requirements, but point ") == (i < 7));
+        ck_assert(!strstr(said.err, "point 7 of the front has not converged, so better designs exist near it") ==
+                  (i < 7));
+        EXPECT(file, point, file_with("i", formatted("%d", i - 1)), "--",
+               "sum(b['requirements/verdict'][:] == b'fail') == a['front/requirements_failed'][int(c)]",
+               "near(np.nanmin(b['requirements/relative_margin'][:]), a['front/relative_margin_min'][int(c)], 1e-9)");
+    }
+    HIFDM(0, "export", file, "--front", temp("f.csv"));
+    EXPECT(temp("f.csv"), file, "--",
+           "list(a[0])[4:9] == ['converged', 'requirements_failed', 'requirements_undecided', 'relative_margin_min', "
+           "'objective_0_psi']",
+           "[int(r['requirements_failed']) for r in a] == list(b['front/requirements_failed'][:])");
+}
+END_TEST
+
+/* NSGA-II judges its points, too; rows about samples are left to the run of a point. */
+START_TEST(generations_have_verdicts)
+{
+    const char *file = temp("f.h5");
+    HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "--set",
+          "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]", "--set", "optimize.generations=40", "--set",
+          "optimize.population=20", "--set", "tolerance.samples=100", "--set", "tolerance.sigma_cut_m=1e-4", "--set",
+          "requirements=[{figure: psi, at_most: 5.5e-3, search: off}, {figure: psi, at_most: 5.6e-3, share: 0.5, "
+          "search: off}]",
+          "-o", file, "--verbose");
+    OUT(", 1 row about samples not judged; ");
+    OUT("  minimum psi, NSGA-II: ");
+    ck_assert(!strstr(said.out, "the result, NSGA"));
+    EXPECT(file, "--", "(a['front/requirements'][:] == 1).all()",
+           "(a['front/requirements_failed'][:] == (a['front/objective'][:, 0] > 5.5e-3)).all()",
+           "0 < sum(a['front/requirements_failed'][:]) < 20");
 }
 END_TEST
 
@@ -375,6 +439,8 @@ Suite *suite_cli_front(void)
     TCase *tests = tcase_create("front");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, a_front_is_printed_stored_and_told);
+    tcase_add_test(tests, points_of_a_front_have_verdicts);
+    tcase_add_test(tests, generations_have_verdicts);
     tcase_add_test(tests, a_front_says_how_far_it_is);
     tcase_add_test(tests, a_slope_says_of_what_it_is);
     tcase_add_test(tests, the_least_beside_an_objective_that_is_met);

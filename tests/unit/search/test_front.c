@@ -85,6 +85,64 @@ START_TEST(a_table_of_many_points_has_the_ends_and_the_knee)
 }
 END_TEST
 
+/* ---- requirements ---- */
+
+static void judge(hf_front *f, int i, int n_failed, int n_undecided, double margin)
+{
+    f->point[i].judgement = (hf_judgement){4, n_failed, n_undecided, margin};
+    f->point[i].is_converged = true;
+}
+
+static int first_of(const hf_front *f)
+{
+    static hf_front_table t;
+    hf_front_tabulate(f, &t);
+    ck_assert(t.suggested == -1 || t.first.steps == f->point[t.suggested].steps);
+    return hf_front_suggested(&t) - 1;
+}
+
+/* Without verdicts the knee comes first. With them a point that fails never does while another one passes, also a
+ * dominated one; among equal verdicts it is a converged point, then one with a larger margin. */
+START_TEST(verdicts_decide_which_point_is_first)
+{
+    hf_front f;
+    ck_assert_int_eq(hf_front_create(2, 1, 6, &f), HF_OK);
+    for (int i = 0; i < 4; i++)
+        put(&f, i, i, (3 - i) * (3 - i), HF_OK);
+    put(&f, 4, 9, 9, HF_OK); /* dominated */
+    put(&f, 5, NAN, NAN, HF_COLLAPSED);
+    f.minimised = 0;
+    hf_front_settle(&f);
+    int usual = f.knee;
+    ck_assert_int_ge(usual, 0);
+    ck_assert_int_eq(f.point[4].mark, HF_FRONT_DOMINATED);
+    ck_assert_int_eq(first_of(&f), usual);
+    for (int i = 0; i < 5; i++)
+        judge(&f, i, 1 + i % 2, 0, 9);
+    judge(&f, 5, 0, 0, 99); /* it has no design */
+    judge(&f, 4, 0, 2, 0.1);
+    ck_assert_int_eq(first_of(&f), 4);
+    judge(&f, 3, 0, 2, 0.05);
+    ck_assert_int_eq(first_of(&f), 3);
+    judge(&f, 0, 0, 1, 0.01);
+    ck_assert_int_eq(first_of(&f), 0);
+    judge(&f, 3, 0, 1, 0.02);
+    ck_assert_int_eq(first_of(&f), 3);
+    f.point[3].is_converged = false;
+    ck_assert_int_eq(first_of(&f), 0);
+    f.minimised = -1; /* a genetic algorithm converges nowhere */
+    ck_assert_int_eq(first_of(&f), 3);
+    for (int i = 0; i < 4; i++)
+        judge(&f, i, 0, 0, 0.2 + 1e-9 * i);
+    ck_assert_int_eq(first_of(&f), usual);
+    for (int i = 0; i < 6; i++)
+        f.point[i].mark = HF_FRONT_FAILED, f.point[i].status = HF_COLLAPSED;
+    f.knee = -1;
+    ck_assert_int_eq(first_of(&f), -1);
+    hf_front_free(&f);
+}
+END_TEST
+
 Suite *suite_unit_front(void)
 {
     Suite *s = suite_create("unit/front");
@@ -92,6 +150,7 @@ Suite *suite_unit_front(void)
     tcase_add_test(t, points_are_sorted_and_marked);
     tcase_add_test(t, a_straight_front_has_no_knee);
     tcase_add_loop_test(t, a_table_of_many_points_has_the_ends_and_the_knee, 0, 8);
+    tcase_add_test(t, verdicts_decide_which_point_is_first);
     suite_add_tcase(s, t);
     return s;
 }
