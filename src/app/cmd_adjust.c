@@ -177,8 +177,8 @@ static void print_numbers(const job *j, FILE *f)
         double z = j->estimate.shared[k], error = z * n->sigma;
         if (fabs(z) <= SEEMS_OFF || n_off++ >= NAMED_MAX) continue;
         if (n->kind == HF_ERROR_TEMPERATURE)
-            hf_print_line(f, "cables seem %.3g K %s than when they were cut, %.1f sigma", fabs(error),
-                          error < 0 ? "colder" : "warmer", fabs(z));
+            hf_print_line(f, "cables seem %.3g K %s than %s, %.1f sigma", fabs(error), error < 0 ? "colder" : "warmer",
+                          j->load_case ? "in the load case" : "when they were cut", fabs(z));
         else
             hf_print_line(f, "spool '%s' seems to have an error of %+.3g of its %s, %.1f sigma", n->set, error,
                           n->kind == HF_ERROR_EA_BATCH ? "EA" : "lengths", fabs(z));
@@ -215,6 +215,18 @@ static void print_adjustments(const job *j, FILE *f)
             n_doubtful, n_doubtful == 1 ? "its" : "their");
 }
 
+/* Prints the adjusted net in other load cases than that of the measurement. */
+static void print_predictions(const job *j, FILE *f)
+{
+    if (!j->n_prediction) return;
+    hf_print_line(f, "%-26s %13s %13s %10s %6s", "predicted in load case", "mm before", "mm after", "min N", "slack");
+    for (int k = 0; k < j->n_prediction; k++) {
+        const hf_adjust_case_prediction *p = &j->prediction[k];
+        hf_print_line(f, "  %-24s %13.4f %13.4f %10.4g %6d", p->load_case, p->estimated_m * 1e3, p->adjusted_m * 1e3,
+                      p->tension_min_N, p->n_slack);
+    }
+}
+
 static void print_summary(const job *j, const hf_options *o, FILE *f)
 {
     const hf_adjustment *a = &j->adjustment;
@@ -226,6 +238,9 @@ static void print_summary(const job *j, const hf_options *o, FILE *f)
                   j->measured.n_node, j->built.model.n_node, hf_adjust_case_chi_square(j),
                   t->sigma_support_m > 0 ? "are estimated"
                                          : "are assumed at their positions in the case (no tolerance.sigma_support_m)");
+    if (j->load_case)
+        hf_print_line(f, "measured in load case '%s', for which all values up to the table of load cases are given",
+                      j->load_case);
     print_aim(j, f);
     if (isfinite(j->measured_m)) hf_print_line(f, "%s measured    %.4f mm", figure, j->measured_m * 1e3);
     hf_print_line(f,
@@ -248,6 +263,7 @@ static void print_summary(const job *j, const hf_options *o, FILE *f)
             "maybe_slack)",
             a->n_maybe_slack, j->built.model.n_cable);
     print_end(j, f);
+    print_predictions(j, f);
     print_instead(j, f);
     if (o->output) hf_print_line(f, "adjustments in %s; above 0, the turnbuckle lets the cable out", o->output);
     if (o->report) hf_print_line(f, "report page: %s", o->report);
@@ -313,6 +329,22 @@ static void print_json_instead(const job *from, hf_json *j)
     hf_json_close(j, ']');
 }
 
+static void print_json_predictions(const job *from, hf_json *j)
+{
+    hf_json_open_rows(j, "predictions");
+    for (int k = 0; k < from->n_prediction; k++) {
+        const hf_adjust_case_prediction *p = &from->prediction[k];
+        hf_json_open_row(j);
+        hf_json_text(j, "load_case", p->load_case);
+        hf_json_number(j, "estimated_m", p->estimated_m);
+        hf_json_number(j, "adjusted_m", p->adjusted_m);
+        hf_json_number(j, "tension_min_N", p->tension_min_N);
+        hf_json_integer(j, "slack", p->n_slack);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
 static void print_json_numbers(const job *from, hf_json *j)
 {
     hf_json_open_rows(j, "shared");
@@ -338,6 +370,7 @@ static void print_json_findings(const job *from, hf_json *j)
     hf_json_line(j, " ");
     hf_json_text(j, "figure", hf_adjust_figure_word[from->task.settings->figure]);
     hf_json_text(j, "aim", aim_word(from->task.settings->figure, from->task.settings->aim));
+    if (from->load_case) hf_json_text(j, "load_case", from->load_case);
     hf_json_integer(j, "measured_nodes", from->measured.n_node);
     hf_json_number(j, "chi_square", hf_adjust_case_chi_square(from));
     hf_json_bool(j, "fits", hf_adjust_case_fits(from));
@@ -365,6 +398,7 @@ static void print_json_findings(const job *from, hf_json *j)
     hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
     print_json_adjustments(from, j);
     print_json_instead(from, j);
+    if (from->n_prediction) print_json_predictions(from, j);
     print_json_numbers(from, j);
 }
 
@@ -424,7 +458,7 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
 {
     static hf_file_out_set files; /* both table and page are written, or neither */
     const hf_report_part part = {"adjust", write_part, j, &files};
-    HF_TRY(hf_adjust_case_load(o->file, o->set, o->n_set, j, messages));
+    HF_TRY(hf_adjust_case_load(o->file, o->set, o->n_set, o->load_case, j, messages));
     HF_TRY(hf_built_design_check(o, &j->problem.settings, messages));
     HF_TRY(hf_tolerance_stage_check(&j->problem, false, messages));
     HF_TRY(check_outputs(j, o, messages));

@@ -171,6 +171,8 @@ static const hf_option option_table[] = {
     {"--measured", NULL, "FILE",
      "CSV id,x_m,y_m,z_m[,sigma_m]: measured positions of nodes of the as-built net; some may be missing", "adjust",
      read_text, AT(measured), 0},
+    {"--load-case", NULL, "NAME", "load case of the as-built net in which the positions were measured (default: none)",
+     "adjust", read_text, AT(load_case), 0},
     {"--result", NULL, "FILE", "result of this case that the net was cut from (default: its form-finding)", "adjust",
      read_text, AT(result), 0},
     {"--output", "-o", "FILE", "CSV of the adjustments (default: none)", "adjust", read_text, AT(output), 0},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "built/adjust.h"
+#include "built/loaded.h"
 #include "built/measured.h"
 #include "built/prior.h"
 #include "run/problem_parts.h"
@@ -20,6 +21,14 @@ typedef struct {
     int n_turnbuckle, n_at_range;
 } hf_adjust_case_instead;
 
+/* What the adjustments do to the net in a load case. NaN: it has no shape. */
+typedef struct {
+    const char *load_case;          /* "nominal": none */
+    double estimated_m, adjusted_m; /* figure before and after the adjustments */
+    double tension_min_N;           /* minimum tension after them */
+    int n_slack;                    /* slack cables after them */
+} hf_adjust_case_prediction;
+
 /* An item of a list that is sorted by size. */
 typedef struct {
     double size;
@@ -30,7 +39,11 @@ typedef struct {
  * `built`. */
 typedef struct {
     hf_problem problem;
-    hf_built built;
+    hf_built built;        /* of the design */
+    const char *load_case; /* of the measurement, borrowed; NULL: none */
+    int i_load_case;       /* its number, -1: none */
+    hf_built_loaded loaded;
+    hf_built *net; /* the net without errors as it was measured: `built`, or that in the load case */
     hf_measured measured;
     const char *path, *measured_path; /* of the case and of the table of positions; borrowed */
     int threads;
@@ -51,14 +64,18 @@ typedef struct {
     int n_at_range;                   /* number of adjustments that reach the range */
     int n_instead;
     hf_adjust_case_instead instead[HF_ADJUST_CASE_INSTEAD]; /* [n_instead], other aims */
-    void *block;
+    int n_prediction;
+    hf_adjust_case_prediction prediction[1 + HF_LOAD_CASES_MAX]; /* [n_prediction], in other load cases */
+    double *rest_m; /* [n_load_case][3 n_attachment], displacements of the attachments by the truss alone */
+    void *block, *rest_block;
 } hf_adjust_case;
 
-/* Loads the case and checks that it has the sections for an adjustment. *adjust must be zero on entry. The paths are
- * borrowed. Returns HF_OK; HF_BAD_CASE with all faults; or the status of another failure. The caller calls
+/* Loads the case and checks that it has the sections for an adjustment. *adjust must be zero on entry. load_case is the
+ * name of the load case of the measurement, NULL for none. The texts are borrowed. Returns HF_OK; HF_BAD_CASE with all
+ * faults; HF_BAD_USAGE for an unknown load case; or the status of another failure. The caller calls
  * hf_adjust_case_free in any case. */
-hf_status hf_adjust_case_load(const char *path, const char *const *set, int n_set, hf_adjust_case *adjust,
-                              hf_messages *messages);
+hf_status hf_adjust_case_load(const char *path, const char *const *set, int n_set, const char *load_case,
+                              hf_adjust_case *adjust, hf_messages *messages);
 
 /* Picks the cables with turnbuckles and reads the measured positions. Returns HF_OK, HF_BAD_CASE, HF_IO or
  * HF_NO_MEMORY. */

@@ -494,6 +494,25 @@ START_TEST(what_is_not_sure_is_told)
 }
 END_TEST
 
+START_TEST(unknown_load_cases_are_named)
+{
+    const char *measured = measured_with("m.csv", HEADER, NULL, "");
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS);
+    HIFDM(2, "adjust", path, "--measured", measured, "--load-case", "up");
+    ERR("--load-case up: the case ");
+    ERR(" has no load cases. Add the load case of the measurement to the list `load_cases`");
+    path = file_with("case.yaml", EA_SCENE SECTIONS "load_cases: [{name: windy, force_N: [0, 0, 1]}]\n");
+    HIFDM(2, "adjust", path, "--measured", measured, "--load-case", "windi");
+    ERR("has no such load case; did you mean 'windy'?");
+    HIFDM(2, "adjust", path, "--measured", measured, "--load-case", "nominal");
+    ERR("has no such load case. Its first load case is 'windy'");
+    HIFDM(0, "adjust", path, "--measured", measured, "--json"); /* no requirement names a load case */
+    ck_assert_ptr_null(strstr(said.out, "predictions"));
+    HIFDM(2, "adjust", path, "--measured", measured, "--load-case", "windy"); /* the measurement knows no wind */
+    ERR("The positions belong to another net, or the errors of the net are larger than in this section");
+}
+END_TEST
+
 START_TEST(bad_cases_are_named)
 {
     const char *measured = measured_with("m.csv", HEADER, NULL, "");
@@ -542,6 +561,7 @@ Suite *suite_cli_adjust(void)
     tcase_add_test(tcase, doubtful_tables_are_told);
     tcase_add_test(tcase, a_warm_truss_is_not_estimated);
     tcase_add_test(tcase, what_is_not_sure_is_told);
+    tcase_add_test(tcase, unknown_load_cases_are_named);
     tcase_add_test(tcase, bad_cases_are_named);
     suite_add_tcase(suite, tcase);
     return suite;
