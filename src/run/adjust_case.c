@@ -3,8 +3,7 @@
  *      case, design -> as-built net -> prior of the errors -> estimate from measured positions -> adjustments -> what
  *      else the measured net shows -> the adjusted net in other load cases
  *
- * Contents: chi^2 - outliers - other aims - the prior - estimate - figure of the measurement - load cases, interface
- */
+ * Contents: chi^2 - outliers - other aims - the prior - estimate - figure measured - load cases - interface */
 #include "run/adjust_case.h"
 
 #include "base/arena.h"
