@@ -12,7 +12,7 @@
 
 HF_API_BEGIN
 
-/* X(name, word). The verdict on a row. HF_VERDICT_NONE: the row has no verdict, because its share is 0. */
+/* X(name, word). The verdict on a row. HF_VERDICT_NONE: there is no row, or no verdict yet. */
 #define HF_VERDICTS(X) X(PASS, "pass") X(FAIL, "fail") X(UNDECIDED, "undecided") X(NONE, "none")
 #define HF_VERDICT_ENUMERATOR(name, word) HF_VERDICT_##name,
 typedef enum { HF_VERDICTS(HF_VERDICT_ENUMERATOR) HF_VERDICT_N } hf_verdict;

@@ -439,8 +439,8 @@ typedef struct {
     char load_case[HF_SET_NAME_SIZE]; /* "nominal", the name of a load case, or "all" for nominal and all load cases */
     double at_least, at_most;         /* bounds in the unit of the figure; NaN: not given */
     double within[2];                 /* both bounds in one key; infinite if not given. The bounds are then copied */
-    double share;         /* required share of the as-built samples; 0: the share is only reported; NaN: nominal net */
-    hf_constrains search; /* whether the row constrains the search */
+    double share;                     /* required share of the as-built samples; NaN: nominal net */
+    hf_constrains search;             /* whether the row constrains the search */
 } hf_requirement_settings;
 
 #define HF_REQUIREMENT_ROWS_MAX 32 /* maximum number of rows of `requirements` */

@@ -59,7 +59,7 @@ typedef struct {
 
 static bool is_judged(const hf_requirement_settings *r)
 {
-    return r->search == HF_SEARCH_ON && !(r->share == 0) && r->figure != HF_REQUIRED_LOOSE;
+    return r->search == HF_SEARCH_ON && r->figure != HF_REQUIRED_LOOSE;
 }
 
 unsigned hf_built_constraints_states(const hf_required *q, bool is_many)

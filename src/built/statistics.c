@@ -422,8 +422,7 @@ static hf_status judge_share(const hf_required *q, int k, const hf_statistics_ro
     HF_TRY(visit_rows(rows, note_sample, &s));
     to->yield = (double)s.n_met / (double)rows->n;
     hf_statistics_interval(rows->n, s.n_met, &to->yield_low, &to->yield_high);
-    to->verdict = r->share == 0               ? HF_VERDICT_NONE
-                  : to->yield_low >= r->share ? HF_VERDICT_PASS
+    to->verdict = to->yield_low >= r->share   ? HF_VERDICT_PASS
                   : to->yield_high < r->share ? HF_VERDICT_FAIL
                                               : HF_VERDICT_UNDECIDED;
     return HF_OK;

@@ -70,7 +70,7 @@ static void check_share(const hf_case *c, int i, const hf_requirement_settings *
         hf_config_fault_in_row(f, list, i, "share", "needs a section tolerance, which defines the as-built samples");
         return;
     }
-    double needed = r->share > 0 ? ceil(log(tail) / log(r->share)) : 0;
+    double needed = ceil(log(tail) / log(r->share));
     if (r->share == 1)
         hf_config_fault_in_row(f, list, i, "share", "cannot be 1: no number of samples shows that all nets pass");
     else if (needed > c->tolerance.samples) {
@@ -99,8 +99,7 @@ static bool is_same_quantity(const hf_case *c, const hf_requirement_settings *a,
            (!has_frequency || frequency_of(c, a) == frequency_of(c, b));
 }
 
-/* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. A row with a
- * share of 0 requires nothing, so it contradicts no row. */
+/* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. */
 static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
 {
     const hf_requirement_settings *r = &c->requirement[i];
@@ -118,7 +117,7 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
             ((isfinite(mine[0]) && isfinite(other[0])) || (isfinite(mine[1]) && isfinite(other[1])))) {
             snprintf(what, sizeof what, "is required by row %d already; keep one of the rows", k);
             hf_config_fault_in_row(f, list, i, "figure", what);
-        } else if (r->share != 0 && q->share != 0 && (mine[0] > other[1] || mine[1] < other[0])) {
+        } else if (mine[0] > other[1] || mine[1] < other[0]) {
             snprintf(what, sizeof what, "contradicts row %d: no value meets both rows", k);
             hf_config_fault_in_row(f, list, i, "figure", what);
         }

@@ -237,7 +237,7 @@ static const hf_field requirement_field[] = {
     {"at_least", HF_FIELD_DOUBLE, IN(requirement, at_least), -BIG, BIG, "", "", NULL},
     {"at_most", HF_FIELD_DOUBLE, IN(requirement, at_most), -BIG, BIG, "", "", NULL},
     {"within", HF_FIELD_BOUNDS, IN(requirement, within), -BIG, BIG, "", "", NULL},
-    {"share", HF_FIELD_DOUBLE, IN(requirement, share), 0, 1, "", "", NULL},
+    {"share", HF_FIELD_DOUBLE, IN(requirement, share), HF_ABOVE_ZERO, 1, "", "", NULL},
     {"search", HF_FIELD_WORD, IN(requirement, search), 0, 0, "on", "", HF_WORDS("on", "off")},
 };
 

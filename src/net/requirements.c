@@ -50,6 +50,5 @@ const char *hf_requirement_name(const hf_requirement_settings *r, char *text, si
         n += snprintf(text + n, size - (size_t)n, !strcmp(r->load_case, "all") ? ", all load cases" : ", %s",
                       r->load_case);
     if (r->share > 0 && (size_t)n < size) snprintf(text + n, size - (size_t)n, ", %g %% of samples", 100 * r->share);
-    if (r->share == 0 && (size_t)n < size) snprintf(text + n, size - (size_t)n, ", samples");
     return text;
 }

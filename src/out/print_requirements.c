@@ -9,11 +9,10 @@
 #define TIGHTEST_SHOWN 5 /* rows shown besides those that are not passed */
 #define CELL 128
 
-/* Returns the order of the verdicts in the table: failed rows, undecided ones, passed ones, those without a verdict. */
+/* Returns the order of the verdicts in the table: failed rows, undecided ones, passed ones. */
 static int rank_of(hf_verdict verdict)
 {
-    static const int rank[HF_VERDICT_N] = {
-        [HF_VERDICT_FAIL] = 0, [HF_VERDICT_UNDECIDED] = 1, [HF_VERDICT_PASS] = 2, [HF_VERDICT_NONE] = 3};
+    static const int rank[HF_VERDICT_N] = {[HF_VERDICT_UNDECIDED] = 1, [HF_VERDICT_PASS] = 2};
     return rank[verdict];
 }
 
@@ -98,8 +97,7 @@ static void print_row(const hf_requirement_verdict *v, int width, FILE *f)
     hf_text_escape(hf_requirement_name(&v->row, name, sizeof name), shown, sizeof shown);
     print_bound_of(v, bound);
     print_margin_of(v, margin);
-    fprintf(f, "  %-12s  %-*s  %11s  %-18s  margin %s",
-            v->verdict == HF_VERDICT_NONE ? "-" : hf_verdict_word[v->verdict], width, shown,
+    fprintf(f, "  %-12s  %-*s  %11s  %-18s  margin %s", hf_verdict_word[v->verdict], width, shown,
             value_text(v->row.figure, v->value, value), bound, margin);
     print_evidence(v, f);
     print_worst(v, f);

@@ -202,20 +202,28 @@ hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *q, co
     return hf_statistics_judge(t, rows, s->requirement);
 }
 
-/* Warns about a length or force that is a thousand times off its bound. Such a bound is probably in mm or kN. */
+/* Warns about a length or force that is a thousand times off all bounds of its row. Such a bound is probably in mm or
+ * kN. A bound of 0 has no unit to be wrong in. */
 #define OTHER_UNIT 1000.0
-static void doubt_bound(const hf_requirement_verdict *v, int i, const char *key, double bound, hf_messages *messages)
+static void doubt_bounds(const hf_requirement_verdict *v, int i, hf_messages *messages)
 {
-    const char *unit = hf_required_figure_unit[v->row.figure], *small = *unit == 'm' ? "mm" : "mN";
-    double factor = fabs(bound) / fabs(v->value);
-    bool has_unit = !strcmp(unit, "m") || !strcmp(unit, "N");
-    if (!has_unit || !(bound > 0) || !(fabs(v->value) > 1e-9)) return;
-    if (factor < OTHER_UNIT && factor > 1 / OTHER_UNIT) return;
+    const hf_requirement_settings *r = &v->row;
+    const char *unit = hf_required_figure_unit[r->figure], *small = *unit == 'm' ? "mm" : "mN", *key = NULL;
+    const double bounds[2] = {r->at_least, r->at_most};
+    double nearest = INFINITY, bound = 0;
+    if ((strcmp(unit, "m") != 0 && strcmp(unit, "N") != 0) || !(fabs(v->value) > 1e-9)) return;
+    for (int k = 0; k < 2; k++) {
+        double factor = bounds[k] > 0 ? bounds[k] / fabs(v->value) : (double)NAN;
+        if (!(fmax(factor, 1 / factor) < nearest)) continue;
+        nearest = fmax(factor, 1 / factor);
+        bound = bounds[k];
+        key = isfinite(r->within[k]) ? "within" : k ? "at_most" : "at_least";
+    }
+    if (!key || nearest < OTHER_UNIT) return;
     hf_warning(messages,
                "requirements.%d.%s: the bound %.6g %s (%.6g %s) and the value %.6g %s (%.6g %s) differ by a factor of "
                "%.3g. Check the unit of the bound",
-               i, key, bound, unit, bound * 1e3, small, v->value, unit, v->value * 1e3, small,
-               factor > 1 ? factor : 1 / factor);
+               i, key, bound, unit, bound * 1e3, small, v->value, unit, v->value * 1e3, small, nearest);
 }
 
 hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
@@ -231,8 +239,7 @@ hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
     for (int i = 0; i < of->n; i++) {
         hf_requirement_verdict *v = &s->requirement[i];
         if (isnan(v->row.share)) hf_required_judge_nominal(of, i, q->value, q->item, q->error, v);
-        doubt_bound(v, i, "at_least", v->row.at_least, messages);
-        doubt_bound(v, i, "at_most", v->row.at_most, messages);
+        doubt_bounds(v, i, messages);
     }
     s->n_requirement = of->n;
     return HF_OK;

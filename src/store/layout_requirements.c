@@ -16,7 +16,7 @@ typedef struct {
 
 /* What the row says, by X(kind, member of judged, name, description). */
 #define ROW_LIST(X)                                                                                                    \
-    X(CHARS, verdict, "verdict", "pass, fail, undecided or none")                                                      \
+    X(CHARS, verdict, "verdict", "pass, fail or undecided")                                                            \
     X(CHARS, figure, "figure", "what the row bounds")                                                                  \
     X(CHARS, of.row.set, "set", "cables; empty: all")                                                                  \
     X(CHARS, feed, "feed", "feed of figures of the surface")                                                           \
@@ -24,7 +24,7 @@ typedef struct {
     X(CHARS, of.row.load_case, "load_case", "nominal, all or the name of a load case")                                 \
     X(REAL, of.row.at_least, "at_least", "minimum, in the unit of the figure; NaN: none")                              \
     X(REAL, of.row.at_most, "at_most", "maximum, in the unit of the figure; NaN: none")                                \
-    X(REAL, of.row.share, "share", "required share of the samples; 0: none is required; NaN: the nominal net")
+    X(REAL, of.row.share, "share", "required share of the samples; NaN: the nominal net")
 #define ROW(kind, member, name, description) HF_LAYOUT_MEMBER(judged, name, member, kind, "", description)
 #define MEMBER(kind, type, member, size, description) ROW(kind, of.member, #member, description)
 static const hf_layout_field judged_field[] = {ROW_LIST(ROW) HF_VERDICT_LIST(MEMBER)};

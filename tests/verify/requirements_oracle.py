@@ -257,7 +257,7 @@ def judge_samples(result, row, said):
     n, met = len(margin), int((margin >= 0).sum())
     low = beta.ppf(0.025, met, n - met + 1) if met else 0.0
     high = beta.ppf(0.975, met + 1, n - met) if met < n else 1.0
-    verdict = ("none" if share == 0 else "pass" if low >= share else "fail" if high < share else "undecided")
+    verdict = ("pass" if low >= share else "fail" if high < share else "undecided")
     quantile = np.sort(margin)[min(int(np.floor((1 - share) * n + 1e-9)), n - 1)]
     assert (quantile >= 0) == (met >= share * n - 1e-9), "quantile and yield"
     assert said["verdict"] == verdict, (said["verdict"], verdict)

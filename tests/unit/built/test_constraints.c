@@ -172,7 +172,7 @@ START_TEST(rows_that_are_left_out_do_not_constrain)
     hf_problem p;
     open_problem(&p, false,
                  "requirements=[{figure: psi, at_most: 1e-4, search: off}, "
-                 "{figure: tension, set: boundary, at_least: 1, share: 0}, {figure: loose_nodes, at_most: 0}]");
+                 "{figure: loose_nodes, at_most: 0}]");
     ck_assert_ptr_null(p.objectives.constraints);
     hf_problem_free(&p);
 }
