@@ -316,13 +316,15 @@ static void print_form_time(const hf_check *c, FILE *f)
 static void print_tolerance_time(const hf_check *c, FILE *f)
 {
     const hf_tolerance_trial *t = &c->tolerance;
+    char states[48] = "";
     if (!c->has_tolerance) return;
+    if (t->n_load_case) snprintf(states, sizeof states, " in %d load cases", 1 + t->n_load_case);
     if (t->n_tried)
         fprintf(
             f,
-            "                as built: %s a net (the first %d tried%s); with first order about %s for %d nets on %d "
+            "                as built: %s a net%s (the first %d tried%s); with first order about %s for %d nets on %d "
             "thread%s\n",
-            hf_print_duration(t->sample_s).text, t->n_tried,
+            hf_print_duration(t->sample_s).text, states, t->n_tried,
             c->problem.settings.has_surface ? ", best fits of the surface included" : "",
             hf_print_duration(c->tolerance_s).text, c->problem.settings.tolerance.samples, c->tolerance_threads,
             c->tolerance_threads == 1 ? "" : "s");

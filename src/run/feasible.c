@@ -8,6 +8,7 @@
 #include "case/config_fault.h"
 #include "net/variables.h"
 #include "run/problem_parts.h"
+#include "run/requirements_stage.h"
 #include "solve/tension_programme.h"
 
 #include <math.h>
@@ -51,6 +52,27 @@ static int list_bounds(const hf_problem *p, hf_feasible_bound bound[HF_FEASIBLE_
                                          is_ratio ? -INFINITY : row->lower,
                                          is_ratio ? INFINITY : row->upper,
                                          is_ratio ? row->upper : INFINITY};
+    }
+    return n;
+}
+
+/* Adds the bounds by the rows of `requirements` that the nominal net has to meet. Returns the number of all bounds. */
+static int add_required(const hf_required *q, int n, hf_feasible_bound bound[HF_FEASIBLE_BOUNDS_MAX])
+{
+    for (int i = 0; i < q->n; i++) {
+        const hf_requirement_settings *r = &q->row[i];
+        const hf_required_column *cables = &q->column[q->low[i] < 0 ? q->high[i] : q->low[i]];
+        bool is_ratio = r->figure == HF_REQUIRED_RATIO, is_nominal = isnan(r->share) && q->states[i] & 1u;
+        if (!is_nominal || (!is_ratio && r->figure != HF_REQUIRED_TENSION)) continue;
+        double most = isnan(r->at_most) ? (double)INFINITY : r->at_most;
+        bound[n++] = (hf_feasible_bound){"requirements",
+                                         i,
+                                         r->set,
+                                         cables->n_cable,
+                                         cables->cable,
+                                         is_ratio || isnan(r->at_least) ? -INFINITY : r->at_least,
+                                         is_ratio ? INFINITY : most,
+                                         is_ratio ? most : INFINITY};
     }
     return n;
 }
@@ -470,5 +492,13 @@ hf_status hf_feasible_check(const hf_problem *p, const hf_problem_source *source
                             hf_messages *messages)
 {
     hf_feasible_bound bound[HF_FEASIBLE_BOUNDS_MAX];
-    return hf_feasible_check_bounds(p, source, list_bounds(p, bound), bound, advice, messages);
+    hf_required required;
+    hf_material masses = {0};
+    hf_status status = hf_requirements_stage_rows(p, &masses, &required, messages);
+    if (status == HF_OK)
+        status = hf_feasible_check_bounds(p, source, add_required(&required, list_bounds(p, bound), bound), bound,
+                                          advice, messages);
+    hf_required_free(&required);
+    hf_material_free(&masses);
+    return status;
 }

@@ -19,8 +19,7 @@
 
 #include <hifdm/problem.h>
 
-/* A bound on the tensions of a set of cables, from optimize.limits or from another list of the case. An open bound is
- * infinite. */
+/* A bound on the tensions of a set of cables, from optimize.limits or `requirements`. An open bound is infinite. */
 typedef struct {
     const char *list; /* list of the case, "optimize.limits"; or a key if row is below 0 */
     int row;          /* row of the list */
@@ -42,6 +41,7 @@ hf_status hf_feasible_check_bounds(const hf_problem *problem, const hf_problem_s
                                    const hf_feasible_bound *bound, char advice[HF_FEASIBLE_ADVICE_SIZE],
                                    hf_messages *messages);
 
-/* Does the same for the bounds on tensions by optimize.limits and optimize.boundary_ratio_cap. */
+/* Does the same for the bounds on tensions by optimize.limits, optimize.boundary_ratio_cap and the rows of
+ * `requirements` on the nominal net. */
 hf_status hf_feasible_check(const hf_problem *problem, const hf_problem_source *source,
                             char advice[HF_FEASIBLE_ADVICE_SIZE], hf_messages *messages);

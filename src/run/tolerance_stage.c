@@ -502,6 +502,7 @@ static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, h
     HF_TRY(open_montecarlo(j, messages));
     aim_beam(j, messages);
     trial->begin_s = hf_clock_thread_cpu_s() - j->begin_s;
+    trial->n_load_case = j->montecarlo.n_load_case;
     double first_s = hf_clock_thread_cpu_s(), now_s = first_s, took_s = 0;
     for (int n = 1; n <= TRIED_MOST && n <= j->montecarlo.n_chunk; n *= 2) {
         double begin_s = now_s;
@@ -546,9 +547,13 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
         trial->scale_yields = HF_SCALE_YIELDS;
         trial->scale_samples = scale_samples(&p->settings.tolerance);
     }
-    hf_status status = trial->begin_s > most_s ? HF_OK : try_samples(&j, most_s, trial, &messages);
+    hf_requirements_stage requirements;
+    hf_status status = hf_requirements_stage_open(p, &requirements, &messages);
+    j.requirements = &requirements;
+    if (status == HF_OK && trial->begin_s <= most_s) status = try_samples(&j, most_s, trial, &messages);
     if (status == HF_OK && trial->scale_yields) status = try_scale(&j, most_s, trial);
     job_free(&j);
+    hf_requirements_stage_free(&requirements);
     return status;
 }
 

@@ -25,13 +25,14 @@ hf_status hf_tolerance_stage_look(const hf_run_request *request, const hf_proble
                                   hf_messages *messages);
 
 /* Estimated processor time of the samples of a run, s. begin_s is the time until the first sample, mostly for the first
- * order, and sample_s that of one sample, from n_tried samples in one thread. n_tried is 0 if counted operations
- * predict a begin_s above most_s; begin_s is then that prediction. The search for the scale (tolerance.required_yield)
- * takes up to scale_yields yields of scale_samples nets, at scale_sample_s each. Most yields end early: scale_s is the
- * time of the search, extrapolated from one with few nets, or 0 if that would not fit into half of most_s. */
+ * order, and sample_s that of one sample in the nominal load case and in the n_load_case others that `requirements` need, from
+ * n_tried samples in one thread. n_tried is 0 if counted operations predict a begin_s above most_s; begin_s is then
+ * that prediction. The search for the scale (tolerance.required_yield) takes up to scale_yields yields of scale_samples
+ * nets, at scale_sample_s each. Most yields end early: scale_s is the time of the search, extrapolated from one with
+ * few nets, or 0 if that would not fit into half of most_s. */
 typedef struct {
     double begin_s, sample_s, scale_sample_s, scale_s;
-    int scale_yields, scale_samples, n_tried;
+    int n_load_case, scale_yields, scale_samples, n_tried;
 } hf_tolerance_trial;
 /* Sets *trial for this shape. No more samples are started than earlier ones predict to end within most_s, s. Returns
  * HF_OK, or the status that prevents samples, without a message. */

@@ -121,16 +121,17 @@ END_TEST
 START_TEST(rows_that_differ_are_accepted)
 {
     HIFDM(0, "check",
-          file_with("c.yaml",
-                    formatted(BUILT_SCENE TOLERANCE LOADS ROWS "  - {figure: tension, at_least: 1}\n"
-                                                               "  - {figure: tension, at_most: 90}\n"
-                                                               "  - {figure: tension, at_least: 1, set: inner}\n"
-                                                               "  - {figure: tension, at_least: 2, share: 0.9}\n"
-                                                               "  - {figure: tension, at_least: 3, share: 0.5}\n"
-                                                               "  - {figure: tension, at_least: 2, load_case: all}\n"
-                                                               "  - {figure: tension, at_least: 2, load_case: cold}\n",
-                              100)));
+          file_with("c.yaml", formatted(BUILT_SCENE TOLERANCE LOADS ROWS
+                                        "  - {figure: tension, at_least: 1}\n"
+                                        "  - {figure: tension, at_most: 90}\n"
+                                        "  - {figure: tension, at_least: 1, set: inner}\n"
+                                        "  - {figure: tension, at_least: 2, share: 0.9}\n"
+                                        "  - {figure: tension, at_least: 3, share: 0.5}\n"
+                                        "  - {figure: tension, at_least: 2, load_case: all}\n"
+                                        "  - {figure: tension, at_least: 2, load_case: cold, share: 0.9}\n",
+                                        100)));
     OUT("valid");
+    OUT("s a net in 2 load cases (the first "); /* those that rows with a share need, of three */
 }
 END_TEST
 
