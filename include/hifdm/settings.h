@@ -345,10 +345,10 @@ typedef enum { HF_SAMPLING_RANDOM, HF_SAMPLING_SOBOL } hf_sampling;
 typedef enum { HF_TOLERANCE_MEASURES(HF_TOLERANCE_ENUMERATOR) HF_TOLERANCE_N_MEASURE } hf_tolerance_measure;
 #undef HF_TOLERANCE_ENUMERATOR
 
-/* Describes one row of tolerance.require. The row bounds a measure. */
+/* One row of the old list tolerance.require, which hf_config_load converts to a row of `requirements`. */
 typedef struct {
-    hf_tolerance_measure measure; /* bounded measure */
-    double at_most, at_least;     /* bounds in the unit of the measure; NaN: not given */
+    int measure;              /* index of the old word */
+    double at_most, at_least; /* bounds in the unit of the measure; NaN: not given */
 } hf_require_settings;
 
 #define HF_REQUIRE_ROWS_MAX 8 /* maximum number of rows of tolerance.require */
@@ -376,10 +376,13 @@ typedef struct {
     int samples;          /* number of samples */
     uint64_t seed;        /* seed of the random numbers */
     hf_sampling sampling; /* method by which samples are chosen */
-    double required_yield;  /* required share of samples that meet the requirements; 0: no share is required */
-    int n_require, n_truss; /* numbers of rows */
-    hf_require_settings require[HF_REQUIRE_ROWS_MAX];     /* [n_require] rows of tolerance.require */
+    int find_scale;       /* 1: find the factor of all errors at which the samples have their required shares */
+    int n_truss;          /* number of rows */
     hf_truss_heat_settings truss[HF_TRUSS_HEAT_ROWS_MAX]; /* [n_truss] rows of tolerance.truss */
+    /* Keys before `requirements`, which hf_config_load converts; nothing else reads them. */
+    double required_yield;
+    int n_require;
+    hf_require_settings require[HF_REQUIRE_ROWS_MAX];
 } hf_tolerance_settings;
 
 /* Returns true if temperatures of cables have errors. */

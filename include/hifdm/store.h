@@ -76,8 +76,7 @@
  *                truss/node/displacement, truss/node/reaction [a][6], truss/member/end_force [b][12]
  *   /tolerance   with a section tolerance: attributes HF_TOLERANCE_LIST, histogram_low_m, histogram_high_m; for q
  *                measures: measure (names), is_measured, mean, mean_low, mean_high, deviation, min, max [q]; quantile,
- *                quantile_low, quantile_high [q][3]; require_measure, require_at_most, require_at_least, require_yield
- *                of the rows of tolerance.require; ranked_cable, ranked_share; error_kind, kind_share; histogram;
+ *                quantile_low, quantile_high [q][3]; ranked_cable, ranked_share; error_kind, kind_share; histogram;
  *                cable_share, psi_by_cut [m], node_deviation_m [n]
  *   /tolerance/sample  of each sample: status, first_order_psi_m, and the measures by name
  *   /truss       with a nodes, b members, c attachments; attributes: HF_SUMMARY_TRUSS_LIST

@@ -73,13 +73,12 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
     X(double, variance_saved, REAL, .json = 3,                                                                         \
       .description = "part of the variance of the mean of psi^2 that it takes")                                        \
     X(double, yield, REAL, .json = 4,                                                                                  \
-      .description = "part of the samples that meets all rows of tolerance.require; NaN: no rows")                     \
+      .description = "part of the samples that meets all rows of requirements with a share; NaN: no rows")             \
     X(double, yield_low, REAL, .json = 4,                                                                              \
       .description = "95 % interval of the yield (Clopper and Pearson): its lower end")                                \
     X(double, yield_high, REAL, .json = 4, .description = "95 % interval of the yield: its upper end")                 \
-    X(double, required_yield, REAL, .json = 4, .description = "tolerance.required_yield of the case; NaN: none")       \
     X(double, sigma_scale, REAL, .json = 4,                                                                            \
-      .description = "all errors times this give the required yield; NaN: not asked for")                              \
+      .description = "all errors times this give the required shares; NaN: not asked for")                             \
     X(int, scale_bound, INT, .json = 4,                                                                                \
       .description = "1: sigma_scale is at least that, -1: below that; 0: just that")                                  \
     X(int, scale_samples, INT, .json = 4, .description = "of each yield on the way to it")                             \
@@ -90,9 +89,6 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
 typedef struct {
     HF_TOLERANCE_LIST(HF_TOLERANCE_MEMBER)
     hf_tolerance_figures figure[HF_TOLERANCE_N_MEASURE]; /* statistics by hf_tolerance_measure */
-    int n_require;                                       /* number of rows of tolerance.require */
-    hf_require_settings require[HF_REQUIRE_ROWS_MAX];    /* [n_require] the rows */
-    double require_yield[HF_REQUIRE_ROWS_MAX];           /* [n_require] yield if only this row is required */
     int n_ranked; /* number of listed cables, ordered by the share of their own errors in the increase of psi^2 */
     char ranked_id[HF_TOLERANCE_RANKED][HF_TOLERANCE_ID_SIZE]; /* [n_ranked] ids of these cables */
     double ranked_share[HF_TOLERANCE_RANKED];                  /* [n_ranked] shares of these cables */

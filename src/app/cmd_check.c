@@ -332,7 +332,7 @@ static void print_tolerance_time(const hf_check *c, FILE *f)
         fprintf(f, "                as built: first order some %s of processor time, counted; samples not tried\n",
                 hf_print_duration(t->begin_s).text);
     if (!t->scale_yields) return;
-    fprintf(f, "                tolerance.required_yield: up to %d yields of %d nets more, most of them ended early",
+    fprintf(f, "                tolerance.find_scale: up to %d yields of %d nets more, most of them ended early",
             t->scale_yields, t->scale_samples);
     if (t->n_tried)
         fprintf(f, ": %s %s", t->scale_s > 0 ? "some" : "with errors as they are at most about",

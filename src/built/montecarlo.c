@@ -348,55 +348,39 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
     return t->has_no_memory ? HF_NO_MEMORY : HF_OK;
 }
 
-/* ---- requirements ---- */
+/* ---- the scale ---- */
 
-bool hf_montecarlo_meets(const hf_tolerance_settings *s, int k, const double *row)
+/* Computes whether each row has its share of the first n samples at this scale. The last samples are not solved when
+ * they cannot change the answer. */
+static hf_status reaches_shares(hf_montecarlo *t, long n, double scale, bool *reaches)
 {
-    const hf_require_settings *r = &s->require[k];
-    double value = row[HF_TOLERANCE_FIRST + r->measure];
-    return !isnan(value) && !(value > r->at_most) && !(value < r->at_least);
-}
-
-bool hf_montecarlo_meets_all(const hf_tolerance_settings *s, const double *row)
-{
-    for (int k = 0; k < s->n_require; k++)
-        if (!hf_montecarlo_meets(s, k, row)) return false;
-    return row[HF_TOLERANCE_STATUS] == HF_OK;
-}
-
-/* Computes whether at least the share settings->required_yield of the first n samples meets all requirements at this
- * scale. */
-static hf_status reaches_yield(hf_montecarlo *t, int n, double scale, bool *reaches)
-{
-    long met = 0, failed = 0;
-    double needed = t->settings->required_yield * n;
+    const hf_required *q = t->required;
+    long met[HF_REQUIREMENT_ROWS_MAX] = {0};
     *reaches = false;
     if (t->tell) t->tell(t->tell_context, scale);
     for (long first = 0; first < n; first += t->n_chunk) {
         int count = n - first < t->n_chunk ? (int)(n - first) : t->n_chunk;
+        bool is_lost = false;
         HF_TRY(hf_montecarlo_run(t, scale, first, count));
-        for (int i = 0; i < count; i++)
-            met += hf_montecarlo_meets_all(t->settings, t->row + i * t->n_value);
-        failed = first + count - met;
-        *reaches = (double)met >= needed;
-        if (*reaches || (double)(n - failed) < needed) break; /* the remaining samples cannot change the answer */
+        *reaches = true;
+        for (int k = 0; k < q->n_share; k++) {
+            double needed = q->row[q->share[k]].share * (double)n * (1 - 1e-12);
+            for (int i = 0; i < count; i++)
+                met[k] += t->row[(size_t)i * (size_t)t->n_value + hf_montecarlo_margin_at(k)] >= 0;
+            *reaches &= (double)met[k] >= needed;
+            is_lost |= (double)(n - (first + count - met[k])) < needed;
+        }
+        if (*reaches || is_lost) break;
     }
     return HF_OK;
 }
 
-bool hf_montecarlo_requires_surface(const hf_tolerance_settings *s)
-{
-    for (int k = 0; k < s->n_require; k++)
-        if (s->require[k].measure != HF_TOLERANCE_PSI && s->require[k].measure < HF_TOLERANCE_MIN_TENSION) return true;
-    return false;
-}
-
-/* Sets the result when all tried scales reach the yield, or none does. In the latter case the net without errors shows
+/* Sets the result when all tried scales reach the shares, or none does. In the latter case the net without errors shows
  * whether any scale can. */
 static hf_status judge_end(hf_montecarlo *t, bool goes_up, double *scale, int *bound)
 {
     bool reaches = true;
-    if (!goes_up) HF_TRY(reaches_yield(t, 1, 0, &reaches));
+    if (!goes_up) HF_TRY(reaches_shares(t, 1, 0, &reaches));
     *bound = goes_up ? 1 : reaches ? -1 : 0;
     if (!reaches) *scale = 0;
     return HF_OK;
@@ -410,29 +394,29 @@ static hf_status find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
     double at = 1, before = 1;
     bool reaches;
     *bound = 0;
-    HF_TRY(reaches_yield(t, n, at, &reaches));
+    HF_TRY(reaches_shares(t, n, at, &reaches));
     bool goes_up = reaches;
     while (reaches == goes_up && (goes_up ? at < largest : at > ldexp(1, -HF_SCALE_DOUBLINGS))) {
         before = at;
         at = goes_up ? fmin(2 * at, largest) : at / 2;
-        HF_TRY(reaches_yield(t, n, at, &reaches));
+        HF_TRY(reaches_shares(t, n, at, &reaches));
     }
     *scale = at;
     if (reaches == goes_up) return judge_end(t, goes_up, scale, bound);
     double good = goes_up ? before : at, bad = goes_up ? at : before;
     for (int k = 0; k < HF_SCALE_HALVINGS; k++) {
         double middle = sqrt(good * bad);
-        HF_TRY(reaches_yield(t, n, middle, &reaches));
+        HF_TRY(reaches_shares(t, n, middle, &reaches));
         *(reaches ? &good : &bad) = middle;
     }
     *scale = good;
     return HF_OK;
 }
 
-/* Finds the scale, and measures the surface only if a requirement needs it. */
+/* Finds the scale, and measures the surface at ambient only if a requirement needs it. */
 hf_status hf_montecarlo_find_scale(hf_montecarlo *t, int n, double *scale, int *bound)
 {
-    t->skips_surface = !hf_montecarlo_requires_surface(t->settings);
+    t->skips_surface = !hf_required_needs_surface(t->required, true, 0);
     hf_status status = find_scale(t, n, scale, bound);
     t->skips_surface = false;
     return status;

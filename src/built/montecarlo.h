@@ -90,19 +90,12 @@ bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets 
  * their rows to montecarlo->row. Returns HF_OK; HF_INTERRUPTED when built->stop requests it; HF_NO_MEMORY. */
 hf_status hf_montecarlo_run(hf_montecarlo *montecarlo, double scale, long first, int n);
 
-/* Return whether a row meets requirement k, or all requirements. A row without the required value does not meet it. */
-bool hf_montecarlo_meets(const hf_tolerance_settings *settings, int k, const double *row);
-bool hf_montecarlo_meets_all(const hf_tolerance_settings *settings, const double *row);
-
-/* Limits of the search for a scale: doublings, halvings, and all yields that it computes, including the first. */
+/* Limits of the search for a scale: doublings, halvings, and all scales that it tries, including the first. */
 enum { HF_SCALE_DOUBLINGS = 10, HF_SCALE_HALVINGS = 7, HF_SCALE_YIELDS = 1 + HF_SCALE_DOUBLINGS + HF_SCALE_HALVINGS };
 
-/* Returns whether a requirement concerns the surface. Measuring the surface takes longer than solving a sample, so the
- * search for a scale measures it only in this case. */
-bool hf_montecarlo_requires_surface(const hf_tolerance_settings *settings);
-
-/* Finds the factor of all errors at which the share settings->required_yield of the first n samples meets all
- * requirements, by bisection to 1 %. Each factor uses the same random numbers.
+/* Finds the factor of all errors at which each row of montecarlo->required with a share has that share of the first n
+ * samples, by bisection to 1 %. Each factor uses the same random numbers. There is at least one such row. The surface
+ * is measured only if a row needs it, because that takes longer than solving a sample.
  *
  * *bound is 0 when *scale is the factor, or when *scale is 0 because not even the nominal net meets the requirements.
  * It is 1 when the factor is at least *scale, the largest one tried (hf_built_errors_largest_scale). It is -1 when the

@@ -183,9 +183,9 @@ hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double
 
 /* Holds the sums over all rows. x is psi^2 of the linear model, y is psi^2 of the solved sample. */
 typedef struct {
-    const hf_tolerance_settings *settings;
+    int n_share; /* number of rows of `requirements` with a share */
     hf_tolerance_summary *to;
-    long n[HF_TOLERANCE_N_MEASURE], n_both, met, met_row[HF_REQUIRE_ROWS_MAX], bin[HF_TOLERANCE_BINS];
+    long n[HF_TOLERANCE_N_MEASURE], n_both, met, bin[HF_TOLERANCE_BINS];
     double sum[HF_TOLERANCE_N_MEASURE], square[HF_TOLERANCE_N_MEASURE]; /* of values, of (value - mean)^2 */
     double mean_y, mean_x, xx, xy, yy; /* means of y and x, sums of products of deviations */
 } moments;
@@ -206,9 +206,10 @@ static void add_row(void *context, const double *row)
     if (row[HF_TOLERANCE_STATUS] != HF_OK) s->to->n_failed++;
     s->to->n_with_slack += row[HF_TOLERANCE_FIRST + HF_TOLERANCE_SLACK] > 0;
     s->to->n_with_loose += row[HF_TOLERANCE_FIRST + HF_TOLERANCE_LOOSE] > 0;
-    s->met += hf_montecarlo_meets_all(s->settings, row);
-    for (int k = 0; k < s->settings->n_require; k++)
-        s->met_row[k] += hf_montecarlo_meets(s->settings, k, row);
+    bool meets = true;
+    for (int k = 0; k < s->n_share; k++)
+        meets &= row[hf_montecarlo_margin_at(k)] >= 0;
+    s->met += meets;
     if (isnan(psi)) return;
     s->n_both++;
     s->mean_y += psi * psi;
@@ -290,20 +291,13 @@ static void control(const hf_covariance *c, const moments *s, hf_tolerance_summa
     to->variance_saved = isnan(mean) ? (double)NAN : to->correlation * to->correlation;
 }
 
-/* Computes the yield of all requirements with its interval, and that of each requirement. */
+/* Computes the share of the samples that meet all rows with a share, with its interval. */
 static void judge_yield(const moments *s, long n, hf_tolerance_summary *to)
 {
-    const hf_tolerance_settings *t = s->settings;
-    to->yield = to->yield_low = to->yield_high = to->required_yield = to->sigma_scale = (double)NAN;
-    to->n_require = t->n_require;
-    if (t->n_require == 0) return;
+    to->yield = to->yield_low = to->yield_high = to->sigma_scale = (double)NAN;
+    if (s->n_share == 0) return;
     to->yield = (double)s->met / (double)n;
     hf_statistics_interval(n, s->met, &to->yield_low, &to->yield_high);
-    if (t->required_yield > 0) to->required_yield = t->required_yield;
-    for (int k = 0; k < t->n_require; k++) {
-        to->require[k] = t->require[k];
-        to->require_yield[k] = (double)s->met_row[k] / (double)n;
-    }
 }
 
 /* Lists the cables with the largest shares in the spread of psi^2, and sets the share of each kind of error. */
@@ -343,7 +337,7 @@ static void find_figures(const moments *s, int k, hf_tolerance_figures *f)
 hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows *rows, hf_tolerance_summary *to)
 {
     const hf_covariance *c = &t->covariance;
-    moments s = {.settings = t->settings, .to = to};
+    moments s = {.n_share = t->required ? t->required->n_share : 0, .to = to};
     *to = (hf_tolerance_summary){.samples = (int)rows->n, .nominal_psi_m = c->nominal_psi_m};
     to->first_order_rms_psi_m = sqrt(c->nominal_psi_m * c->nominal_psi_m + c->spread_m2);
     HF_TRY(visit_rows(rows, add_row, &s));

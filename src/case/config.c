@@ -518,7 +518,10 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     with_document(&l, settings->text, settings->text_length, use_root, NULL);
     for (int i = 0; i < n_override; i++)
         apply_override(&l, overrides[i]);
-    if (l.walked && !l.is_study && !l.no_memory) hf_config_check(settings, &l.faults);
+    if (l.walked && !l.is_study && !l.no_memory) {
+        hf_config_rename_require(settings, &l.faults);
+        hf_config_check(settings, &l.faults);
+    }
     hf_config_complete(settings);
     cut_sweep(&l);
     hf_status sealed = seal(settings, overrides, n_override);

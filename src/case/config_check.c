@@ -186,7 +186,7 @@ static void check_truss(const hf_case *c, hf_config_faults *f)
 
 static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
 {
-    for (const hf_list *list = hf_list_table; list < hf_list_table + hf_n_list; list++)
+    for (const hf_list *list = hf_list_table; list < hf_list_table + hf_n_list + HF_OLD_LISTS; list++)
         for (int row = 0; row < hf_key_n_row(c, list); row++) {
             if (!*hf_config_where(f, hf_key_of_row(list, row, -1).i_location)) continue; /* the item was no row */
             for (int i = 0; i < list->n_field; i++) {

@@ -141,33 +141,6 @@ static void check_expansions(const hf_case *c, hf_config_faults *f)
 
 /* ---- tolerance ---- */
 
-static void check_require(const hf_case *c, hf_config_faults *f)
-{
-    static const char list[] = "tolerance.require";
-    for (int i = 0; i < c->tolerance.n_require; i++) {
-        const hf_require_settings *row = &c->tolerance.require[i];
-        if (isnan(row->at_most) && isnan(row->at_least))
-            hf_config_fault_in_row(f, list, i, "measure", "has no limit; give at_most, at_least or both");
-        if (row->at_least > row->at_most) hf_config_fault_in_row(f, list, i, "at_least", "must not be above at_most");
-        bool is_ruze = row->measure >= HF_TOLERANCE_GAIN_LOSS && row->measure < HF_TOLERANCE_PATTERN_LOSS,
-             is_loss = is_ruze || row->measure == HF_TOLERANCE_PATTERN_LOSS,
-             is_of_surface = row->measure != HF_TOLERANCE_PSI && row->measure < HF_TOLERANCE_MIN_TENSION;
-        if (is_loss && !isnan(row->at_least))
-            hf_config_fault_in_row(f, list, i, "at_least", "asks for a loss of gain; give at_most");
-        if (row->measure == HF_TOLERANCE_MIN_TENSION && !isnan(row->at_most))
-            hf_config_fault_in_row(f, list, i, "at_most", "asks for slack cables; give at_least");
-        else if (row->at_most < 0 && row->measure != HF_TOLERANCE_PATTERN_LOSS)
-            hf_config_fault_in_row(f, list, i, "at_most", "is below 0, which no net can reach");
-        if (is_of_surface && !c->has_surface)
-            hf_config_fault_in_row(f, list, i, "measure", "is not measured: add a section surface");
-        else if (is_ruze && c->surface.frequencies_Hz.n == 0)
-            hf_config_fault_in_row(f, list, i, "measure", "needs surface.frequencies_Hz");
-        else if (row->measure == HF_TOLERANCE_PATTERN_LOSS && !c->surface.has_pattern)
-            hf_config_fault_in_row(f, list, i, "measure",
-                                   "needs a section surface.pattern, which says what illuminates the reflector");
-    }
-}
-
 static void check_truss_heat(const hf_case *c, hf_config_faults *f)
 {
     static const char list[] = "tolerance.truss";
@@ -201,7 +174,6 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
     bool knows_expansion = false;
     for (int i = 0; i < c->built.n_cable; i++)
         knows_expansion |= !isnan(c->built.cable[i].expansion_per_K);
-    check_require(c, f);
     check_truss_heat(c, f);
     check_load_errors(c, f);
     if (t->sigma_cut_m + t->sigma_cut_ratio + t->sigma_EA_ratio + t->sigma_support_m + t->sigma_temperature_K +
@@ -214,9 +186,11 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
         hf_config_fault_of(
             f, t->sigma_temperature_K > 0 ? "tolerance.sigma_temperature_K" : "tolerance.sigma_load_case_temperature_K",
             "needs expansion_per_K in a row of `cables`");
-    if (t->required_yield > 0 && t->n_require == 0)
-        hf_config_fault_of(f, "tolerance.required_yield",
-                           "needs rows of tolerance.require, which say what a net must keep");
+    bool has_share = false;
+    for (int i = 0; i < c->n_requirement; i++)
+        has_share |= !isnan(c->requirement[i].share);
+    if (t->find_scale && !has_share)
+        hf_config_fault_of(f, "tolerance.find_scale", "needs rows of `requirements` with a share");
     if (t->batch > 0 && t->sigma_cut_ratio + t->sigma_EA_ratio == 0)
         hf_config_fault_of(f, "tolerance.batch", "is about sigma_cut_ratio and sigma_EA_ratio; give one of them");
 }

@@ -60,7 +60,8 @@ static void check_load_case(const hf_case *c, int i, const hf_requirement_settin
     hf_config_fault_in_row(f, list, i, "load_case", what);
 }
 
-/* Reports a share that no outcome of the samples could show with a confidence of 95 %. */
+/* Reports a share that no outcome of the samples could show with a confidence of 95 %. A row that was converted from an
+ * old key has no share of its own; its verdict is then undecided. */
 static void check_share(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
 {
     const double tail = 0.025;
@@ -73,7 +74,7 @@ static void check_share(const hf_case *c, int i, const hf_requirement_settings *
     double needed = ceil(log(tail) / log(r->share));
     if (r->share == 1)
         hf_config_fault_in_row(f, list, i, "share", "cannot be 1: no number of samples shows that all nets pass");
-    else if (needed > c->tolerance.samples) {
+    else if (needed > c->tolerance.samples && hf_config_is_given_in_row(f, list, i, "share")) {
         snprintf(what, sizeof what, "cannot be decided by %d samples; set tolerance.samples to at least %.0f",
                  c->tolerance.samples, needed);
         hf_config_fault_in_row(f, list, i, "share", what);

@@ -12,8 +12,8 @@ static int n_location_of(const hf_list *list)
 
 int hf_key_n_location(void)
 {
-    int n = hf_n_field;
-    for (int i = 0; i < hf_n_list; i++)
+    int n = hf_n_field + HF_OLD_FIELDS;
+    for (int i = 0; i < hf_n_list + HF_OLD_LISTS; i++)
         n += n_location_of(&hf_list_table[i]);
     return n;
 }
@@ -23,7 +23,7 @@ hf_key hf_key_of_row(const hf_list *list, int row, int i_field)
     hf_key key = {.list = list, .row = row};
     key.field = i_field < 0 ? NULL : &list->field[i_field];
     key.offset = list->offset + (size_t)row * list->row_size + (key.field ? key.field->offset : 0);
-    key.i_location = hf_n_field + row * (1 + list->n_field) + 1 + i_field;
+    key.i_location = hf_n_field + HF_OLD_FIELDS + row * (1 + list->n_field) + 1 + i_field;
     for (const hf_list *before = hf_list_table; before < list; before++)
         key.i_location += n_location_of(before);
     snprintf(key.path, sizeof key.path, "%s.%d%s%s", list->path, row, key.field ? "." : "",
@@ -51,20 +51,20 @@ static bool find_in_list(const hf_list *list, const char *path, hf_key *key)
 
 bool hf_key_find(const char *path, hf_key *key)
 {
-    for (int i = 0; i < hf_n_field; i++) {
+    for (int i = 0; i < hf_n_field + HF_OLD_FIELDS; i++) {
         if (strcmp(hf_field_table[i].path, path) != 0) continue;
         *key = (hf_key){.field = &hf_field_table[i], .offset = hf_field_table[i].offset, .i_location = i};
         snprintf(key->path, sizeof key->path, "%s", path);
         return true;
     }
-    for (int i = 0; i < hf_n_list; i++)
+    for (int i = 0; i < hf_n_list + HF_OLD_LISTS; i++)
         if (find_in_list(&hf_list_table[i], path, key)) return true;
     return false;
 }
 
 const hf_list *hf_key_find_list(const char *path)
 {
-    for (int i = 0; i < hf_n_list; i++)
+    for (int i = 0; i < hf_n_list + HF_OLD_LISTS; i++)
         if (!strcmp(hf_list_table[i].path, path)) return &hf_list_table[i];
     return NULL;
 }

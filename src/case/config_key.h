@@ -11,6 +11,10 @@ extern const char hf_config_help_text[];
 
 #define HF_KEY_SIZE 160 /* maximum size of a path with its NUL */
 
+/* Old keys and lists, which stand behind the others in the tables. They are read and converted (config_rename.h), and
+ * no list of keys has them. */
+enum { HF_OLD_FIELDS = 2, HF_OLD_LISTS = 1 };
+
 typedef struct {
     char path[HF_KEY_SIZE];
     const hf_field *field; /* its row of the table; NULL: a whole row such as "optimize.variables.0" */

@@ -1,6 +1,6 @@
 /* The tables of config.h: every key of a case file with its default. The rows of generators are beside their settings,
  * in generate.h and truss.h. No other file contains defaults. */
-#include "case/config_key.h"
+#include "case/config_rename.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -135,7 +135,7 @@ const hf_field hf_field_table[] = {
     {"tolerance.samples", HF_FIELD_INT, AT(tolerance.samples), 10, 100000000, "1000", "", NULL},
     {"tolerance.seed", HF_FIELD_UINT64, AT(tolerance.seed), 0, 18446744073709551615.0, "1", "", NULL},
     {"tolerance.sampling", HF_FIELD_WORD, AT(tolerance.sampling), 0, 0, "random", "", hf_sampling_word},
-    {"tolerance.required_yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL},
+    {"tolerance.find_scale", HF_FIELD_WORD, AT(tolerance.find_scale), 0, 0, "false", "", HF_WORDS("false", "true")},
 
 #define FIELD(section, member, type, ...) {"truss." #member, type, AT(section.member), __VA_ARGS__},
     HF_TRUSS_KEYS(FIELD, truss)
@@ -157,8 +157,12 @@ const hf_field hf_field_table[] = {
 
                     {"truss.import.nodes", HF_FIELD_TEXT, AT(truss_nodes_path), 1, HF_PATH_SIZE, NULL, "", NULL},
     {"truss.import.members", HF_FIELD_TEXT, AT(truss_members_path), 1, HF_PATH_SIZE, NULL, "", NULL},
+
+    /* The HF_OLD_FIELDS old keys. */
+    {"tolerance.required_yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL},
+    {"tolerance.yield", HF_FIELD_DOUBLE, AT(tolerance.required_yield), 0, 0.9999, "0", "", NULL},
 };
-const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table;
+const int hf_n_field = sizeof hf_field_table / sizeof *hf_field_table - HF_OLD_FIELDS;
 
 /* ---- lists of rows ---- */
 
@@ -222,8 +226,12 @@ static const hf_field load_case_field[] = {
     {"nodes", HF_FIELD_TEXT, IN(load_case, nodes_path), 1, HF_PATH_SIZE, "", "", NULL},
 };
 
+#define WORD(word, figure, feed, is_ruze) word,
+static const char *const old_measure[] = {HF_OLD_MEASURES(WORD) NULL};
+#undef WORD
+
 static const hf_field require_field[] = {
-    {"measure", HF_FIELD_WORD, IN(require, measure), 0, 0, NULL, "", hf_tolerance_measure_word},
+    {"measure", HF_FIELD_WORD, IN(require, measure), 0, 0, NULL, "", old_measure},
     {"at_most", HF_FIELD_DOUBLE, IN(require, at_most), -BIG, BIG, "", "", NULL},
     {"at_least", HF_FIELD_DOUBLE, IN(require, at_least), -BIG, BIG, "", "", NULL},
 };
@@ -264,11 +272,12 @@ const hf_list hf_list_table[] = {
     LIST("nodes", built.n_node, built.node, HF_MATERIAL_ROWS_MAX, node_field, 0),
     LIST("load_cases", built.n_load_case, built.load_case, HF_LOAD_CASE_ROWS_MAX, load_case_field, 0),
     LIST("requirements", n_requirement, requirement, HF_REQUIREMENT_ROWS_MAX, requirement_field, 0),
-    LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field, 0),
     LIST("tolerance.truss", tolerance.n_truss, tolerance.truss, HF_TRUSS_HEAT_ROWS_MAX, truss_heat_field, 0),
+    /* The HF_OLD_LISTS old lists. */
+    LIST("tolerance.require", tolerance.n_require, tolerance.require, HF_REQUIRE_ROWS_MAX, require_field, 0),
 };
 #undef LIST
-const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table;
+const int hf_n_list = sizeof hf_list_table / sizeof *hf_list_table - HF_OLD_LISTS;
 
 /* ---- differences ---- */
 

@@ -3,7 +3,7 @@
  *     tables of points ---> axes, figures of each stage ---> which figures vary ---> verdicts ---> ranking figure
  *       ---> best point ---> whether the figure still improves at the end of an axis, intervals that pass
  *
- * Contents: reading, what varies, the required yield, verdicts, the best point, the end of an axis, intervals that
+ * Contents: reading, what varies, verdicts, the best point, the end of an axis, intervals that
  * pass. */
 #include "out/merged.h"
 
@@ -20,8 +20,6 @@
 #define RESOLVED_M 1e-9    /* differences of lengths below this are rounding */
 #define REACHED_RATIO 1e-9 /* rounding of an objective, relative to its value after form-finding */
 
-const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER] = {"", "no", "open", "yes"};
-
 const char *hf_merged_stage_word(hf_merged_stage stage)
 {
     static const char *const other[] = {"tolerance", "load_cases", "requirements"};
@@ -33,7 +31,7 @@ const char *hf_merged_stage_word(hf_merged_stage stage)
 #define GROUP_SIZE (HF_SET_NAME_SIZE + 32)
 static const char *const key_of_stage[] = {"psi_m", "inner_tension_ratio", "boundary_tension_ratio", "residual_N",
                                            "n_slack"};
-static const char *const key_as_built[] = {"psi_95_m", "yield", "yield_low", "yield_high", "required_yield"};
+static const char *const key_as_built[] = {"psi_95_m", "yield", "yield_low", "yield_high"};
 enum { N_KEY = sizeof key_of_stage / sizeof *key_of_stage, N_BUILT = sizeof key_as_built / sizeof *key_as_built };
 
 bool hf_merged_is(const char *path)
@@ -274,33 +272,6 @@ static hf_status choose_main(hf_merged *m, hf_messages *messages)
     return HF_OK;
 }
 
-/* ---- the required yield ---- */
-
-static double built_value(const hf_merged *m, const char *key, int i)
-{
-    const hf_merged_figure *f = hf_merged_find(m, HF_MERGED_BUILT, key);
-    return f && hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN;
-}
-
-hf_merged_answer hf_merged_meets_yield(const hf_merged *m, int i)
-{
-    double required = built_value(m, "required_yield", i);
-    double low = built_value(m, "yield_low", i), high = built_value(m, "yield_high", i);
-    if (!(required > 0) || isnan(low) || isnan(high)) return HF_MERGED_NOT_ASKED;
-    return low >= required ? HF_MERGED_YES : high >= required ? HF_MERGED_OPEN : HF_MERGED_NO;
-}
-
-double hf_merged_required_yield(const hf_merged *m)
-{
-    double same = (double)NAN;
-    for (int i = 0; i < m->n; i++) {
-        double required = built_value(m, "required_yield", i);
-        if (!isnan(required) && !isnan(same) && required != same) return (double)NAN;
-        if (!isnan(required)) same = required;
-    }
-    return same;
-}
-
 /* ---- verdicts ---- */
 
 static hf_verdict verdict_of(const hf_merged *m, int i, int row)
@@ -338,12 +309,8 @@ static hf_merged_judgement judge(const hf_merged *m, int i)
     hf_merged_judgement j = {.verdict = HF_VERDICT_NONE, .tightest = -1};
     int count[HF_VERDICT_N] = {0};
     if (!hf_merged_is_done(m, i)) return j;
-    hf_merged_answer yield = hf_merged_meets_yield(m, i);
     for (int row = 0; row < m->n_row; row++)
         count[verdict_of(m, i, row)]++;
-    count[HF_VERDICT_PASS] += yield == HF_MERGED_YES;
-    count[HF_VERDICT_FAIL] += yield == HF_MERGED_NO;
-    count[HF_VERDICT_UNDECIDED] += yield == HF_MERGED_OPEN;
     j.n_failed = count[HF_VERDICT_FAIL];
     j.n_undecided = count[HF_VERDICT_UNDECIDED];
     j.n_required = count[HF_VERDICT_PASS] + j.n_failed + j.n_undecided;

@@ -20,11 +20,6 @@ typedef enum {
  * "requirements". */
 const char *hf_merged_stage_word(hf_merged_stage stage);
 
-/* Whether a point meets the yield that its case requires. HF_MERGED_OPEN: the 95 % interval of its samples contains the
- * required yield. */
-typedef enum { HF_MERGED_NOT_ASKED, HF_MERGED_NO, HF_MERGED_OPEN, HF_MERGED_YES, HF_MERGED_N_ANSWER } hf_merged_answer;
-extern const char *const hf_merged_answer_word[HF_MERGED_N_ANSWER]; /* "", "no", "open", "yes" */
-
 typedef struct {
     hf_merged_stage stage;
     char load_case[HF_SET_NAME_SIZE]; /* load case of HF_MERGED_LOAD_CASES; "" for other stages */
@@ -34,7 +29,7 @@ typedef struct {
     bool is_psi;  /* an objective that equals psi of this stage at all points */
 } hf_merged_figure;
 
-/* What a point has to meet: the rows of `requirements` with a verdict, and its required yield. Points rank by the
+/* What a point has to meet: the rows of `requirements` with a verdict. Points rank by the
  * number of requirements that fail, then by the number of undecided ones, then by the smallest relative margin. */
 typedef struct {
     hf_verdict verdict;                    /* HF_VERDICT_NONE: nothing is required, or the point is not done */
@@ -94,11 +89,6 @@ bool hf_merged_is_beyond(const hf_merged *merged, const hf_merged_figure *loss, 
  * more than rounding, between points that agree in all other axes. Returns 0 for an axis of errors, too, because
  * smaller errors are always better. */
 int hf_merged_improves_on(const hf_merged *merged, int axis);
-
-/* Returns whether a point meets its required yield. */
-hf_merged_answer hf_merged_meets_yield(const hf_merged *merged, int point);
-/* Returns the required yield, or NaN when points require none or different ones. */
-double hf_merged_required_yield(const hf_merged *merged);
 
 /* Returns whether any point has a verdict. The points then rank by their verdicts first. */
 bool hf_merged_is_judged(const hf_merged *merged);

@@ -24,7 +24,7 @@
 
 /* ---- columns ---- */
 
-typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_YIELD, OF_VERDICT, OF_TIGHTEST } column_kind;
+typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_VERDICT, OF_TIGHTEST } column_kind;
 
 /* Describes a column of the table. Its head has two lines: the name and the unit. */
 typedef struct {
@@ -314,21 +314,10 @@ static void print_cell(const hf_merged *m, const column *c, int i, char text[CEL
         print_axis_value(m, c, i, text);
     else if (c->kind == OF_FIGURE)
         print_figure(m, c, i, text);
-    else if (c->kind == OF_YIELD)
-        snprintf(text, CELL_SIZE, "%s", hf_merged_answer_word[hf_merged_meets_yield(m, i)]);
     else if (m->status.value[i] == HF_NOT_EVALUATED)
         strcpy(text, "missing");
     else
         snprintf(text, CELL_SIZE, "%s", hf_status_word((hf_status)m->status.value[i]));
-}
-
-/* Counts the points by their answer to the required yield. Returns the number of points that require one. */
-static int count_answers(const hf_merged *m, int count[HF_MERGED_N_ANSWER])
-{
-    memset(count, 0, HF_MERGED_N_ANSWER * sizeof *count);
-    for (int i = 0; i < m->n; i++)
-        count[hf_merged_meets_yield(m, i)]++;
-    return m->n - count[HF_MERGED_NOT_ASKED];
 }
 
 /* ---- the table ---- */
@@ -361,12 +350,10 @@ static void add_columns(table *t)
     for (int i = 0; i < m->n; i++)
         all_done &= hf_merged_is_done(m, i);
     if (!all_done) add_column(t, (column){.kind = OF_STATUS, .head = "status"});
-    int count[HF_MERGED_N_ANSWER], n_asked = count_answers(m, count);
     const hf_merged_figure *margin = hf_merged_find(m, HF_MERGED_REQUIREMENTS, HF_MERGED_MARGIN);
     if (m->n_row > 0) add_column(t, (column){.kind = OF_VERDICT, .head = "verdict"});
     if (m->n_row > 0 && margin) add_column(t, figure_column(m, (int)(margin - m->figure)));
     if (m->n_row > 0) add_column(t, (column){.kind = OF_TIGHTEST, .head = "tightest requirement and its margin"});
-    if (n_asked > 0) add_column(t, (column){.kind = OF_YIELD, .head = "meets", .unit = "yield"});
     for (int rank = 0; rank < N_RANK; rank++)
         for (int k = 0; k < m->n_figure; k++)
             if (is_shown(m, &m->figure[k]) && !m->figure[k].is_same && rank_of(m, k) == rank)
@@ -570,19 +557,6 @@ static void print_advice(const hf_merged *m, FILE *f)
     if (*hf_print_study_advice(m, text)) hf_print_line(f, "  %-13s %s", "advice", text);
 }
 
-static void print_yield(const hf_merged *m, FILE *f)
-{
-    int count[HF_MERGED_N_ANSWER], n_asked = count_answers(m, count);
-    double required = hf_merged_required_yield(m);
-    char part[32] = "as each point requires";
-    if (n_asked == 0) return;
-    if (!isnan(required)) snprintf(part, sizeof part, "of %.6g %%", 100 * required);
-    fprintf(f, "  %-13s %s: met by %d of %d points", "yield", part, count[HF_MERGED_YES], n_asked);
-    if (count[HF_MERGED_OPEN])
-        fprintf(f, "; open for %d, which need more samples (tolerance.samples)", count[HF_MERGED_OPEN]);
-    fputc('\n', f);
-}
-
 /* Prints the number of failed points for each status, with the reason of the first one. */
 static void print_failures(const hf_merged *m, FILE *f)
 {
@@ -654,7 +628,6 @@ void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
     print_head(m, f);
     print_advice(m, f);
     print_best(&t, f);
-    print_yield(m, f);
     print_same(m, f);
     print_failures(m, f);
     if (t.n_column > t.n_axis) {

@@ -65,27 +65,20 @@ static void print_first_order(const hf_tolerance_summary *t, FILE *f)
 
 static void print_yield(const hf_tolerance_summary *t, FILE *f)
 {
-    if (t->n_require == 0) return;
-    fprintf(f, "                yield %.2f %% (95 %% interval %.2f to %.2f %%)", 100 * t->yield, 100 * t->yield_low,
-            100 * t->yield_high);
-    for (int k = 0; k < t->n_require; k++) {
-        fprintf(f, "%s %s", k ? "," : ":", hf_tolerance_measure_word[t->require[k].measure]);
-        if (!isnan(t->require[k].at_most)) fprintf(f, " at most %.10g", t->require[k].at_most);
-        if (!isnan(t->require[k].at_least)) fprintf(f, " at least %.10g", t->require[k].at_least);
-        fprintf(f, " in %.2f %%", 100 * t->require_yield[k]);
-    }
-    fputc('\n', f);
-    if (isnan(t->required_yield)) return;
+    if (isfinite(t->yield))
+        fprintf(f,
+                "                yield %.2f %% (95 %% interval %.2f to %.2f %%): samples that meet all requirements\n",
+                100 * t->yield, 100 * t->yield_low, 100 * t->yield_high);
+    if (isnan(t->sigma_scale)) return;
     const char *bound = t->scale_bound > 0 ? "at least " : t->scale_bound < 0 ? "less than " : "";
     if (t->sigma_scale == 0)
-        fprintf(f, "                no errors are small enough for a yield of %g %%: the net without errors fails\n",
-                100 * t->required_yield);
+        fputs("                no errors are small enough for the required shares: the net without errors fails\n", f);
     else if (t->sigma_scale < 1)
-        fprintf(f, "                for a yield of %g %%, reduce all errors to %s%.4g %% (from %d samples)\n",
-                100 * t->required_yield, bound, 100 * t->sigma_scale, t->scale_samples);
+        fprintf(f, "                for the required shares, reduce all errors to %s%.4g %% (from %d samples)\n", bound,
+                100 * t->sigma_scale, t->scale_samples);
     else
-        fprintf(f, "                a yield of %g %% holds up to %s%.4g times these errors (from %d samples)\n",
-                100 * t->required_yield, bound, t->sigma_scale, t->scale_samples);
+        fprintf(f, "                the required shares hold up to %s%.4g times these errors (from %d samples)\n",
+                bound, t->sigma_scale, t->scale_samples);
 }
 
 static void print_shares(const hf_tolerance_summary *t, FILE *f)

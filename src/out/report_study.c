@@ -143,11 +143,6 @@ static void write_figures(const hf_merged *m, FILE *f)
     }
     hf_json_close(&j, ']');
     hf_json_text(&j, "main", hf_merged_stage_word(m->main));
-    hf_json_number(&j, "required_yield", hf_merged_required_yield(m));
-    hf_json_open(&j, "meets_yield", '[');
-    for (int i = 0; i < m->n; i++)
-        hf_json_text(&j, NULL, hf_merged_answer_word[hf_merged_meets_yield(m, i)]);
-    hf_json_close(&j, ']');
     hf_json_integer(&j, "best", m->best);
 }
 

@@ -11,6 +11,7 @@
 #include "case/config_fault.h"
 #include "net/cable_pick.h"
 #include "run/load_case_stage.h"
+#include "run/requirements_stage.h"
 #include "solve/limits.h"
 
 #include <math.h>
@@ -300,23 +301,30 @@ static hf_status pick_cables(job *j, hf_messages *messages)
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }
 
-/* Finds the minimum tensions that tolerance.require and optimize.limits demand; 0 for cables without a demand. */
+/* Finds the minimum tensions that optimize.limits and `requirements` demand of the net as measured, which is in the
+ * nominal load case; 0 for cables without a demand. */
 static hf_status find_least(job *j, hf_messages *messages)
 {
-    const hf_case *c = &j->problem.settings;
+    const hf_problem *p = &j->problem;
     hf_limits limits;
-    hf_status status = hf_limits_create(&j->problem.scene, &j->problem.model, &c->optimize, &limits, messages);
-    for (int e = 0; e < j->problem.scene.n_cable; e++)
-        for (int k = 0; k < c->tolerance.n_require; k++) {
-            const hf_require_settings *row = &c->tolerance.require[k];
-            if (row->measure == HF_TOLERANCE_MIN_TENSION && row->at_least > j->least_N[e])
-                j->least_N[e] = row->at_least;
-        }
+    hf_required required = {0};
+    hf_material masses = {0};
+    hf_status status = hf_limits_create(&p->scene, &p->model, &p->settings.optimize, &limits, messages);
+    if (status == HF_OK) status = hf_requirements_stage_rows(p, &masses, &required, messages);
     for (int k = 0; k < limits.n && status == HF_OK; k++)
         for (int i = 0; i < limits.row[k].n_cable && limits.row[k].kind == HF_LIMIT_TENSION; i++) {
             double *least_N = &j->least_N[limits.row[k].cable[i]];
             *least_N = fmax(*least_N, limits.row[k].lower);
         }
+    for (int k = 0; k < required.n && status == HF_OK; k++) {
+        const hf_requirement_settings *row = &required.row[k];
+        if (row->figure != HF_REQUIRED_TENSION || required.low[k] < 0 || !(required.states[k] & 1u)) continue;
+        const hf_required_column *cables = &required.column[required.low[k]];
+        for (int i = 0; i < cables->n_cable; i++)
+            j->least_N[cables->cable[i]] = fmax(j->least_N[cables->cable[i]], row->at_least);
+    }
+    hf_required_free(&required);
+    hf_material_free(&masses);
     hf_arena_free_block(limits.block);
     return status;
 }

@@ -62,7 +62,7 @@ typedef struct {
     bool has_tolerance;    /* `tolerance` is set */
     hf_tolerance_trial tolerance;
     int tolerance_threads;        /* number of threads with work for the samples */
-    double tolerance_s, yields_s; /* times of all samples, and of the search for tolerance.required_yield */
+    double tolerance_s, yields_s; /* times of all samples, and of the search for tolerance.find_scale */
     hf_solver solver;             /* of the designs of a generation */
     double design_s, search_s;    /* times of a design of the first generation; maximum of the whole search */
     bool is_step_tried;           /* false: step_s follows from counted operations */

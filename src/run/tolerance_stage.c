@@ -6,7 +6,7 @@
  *     samples in chunks (hf_montecarlo_run) -> journal, kept for a resumed run and for other tasks
  *         | all chunks are there
  *         v
- *     statistics; the scale of the errors for a required yield -> summary and store
+ *     statistics; the scale of the errors for the required shares -> summary and store
  *
  * hf_tolerance_stage_check refuses a case before the form-finding. hf_tolerance_stage_try estimates the time from a few
  * samples. */
@@ -36,41 +36,6 @@ static bool make_beam(const hf_problem *p, hf_gain_beam *beam)
 {
     hf_gain_beam_make(&p->surface, &p->facets, p->scene.position_m, hf_surface_highest_Hz(&p->surface), beam);
     return beam->order < HF_GAIN_ORDER_MOST;
-}
-
-/* Returns the word of the measure of the facets that corresponds to a gain loss of the nodes. Returns NULL if `measure`
- * is no such loss or the net has no facets. The gain of a reflector is that of its facets. */
-static const char *loss_of_nodes(const hf_problem *p, hf_tolerance_measure measure)
-{
-    if (measure != HF_TOLERANCE_GAIN_LOSS && measure != HF_TOLERANCE_FIT_GAIN_LOSS) return NULL;
-    hf_tolerance_measure of_facets = measure + (HF_TOLERANCE_FACET_GAIN_LOSS - HF_TOLERANCE_GAIN_LOSS);
-    return hf_montecarlo_measures(&p->surface, &p->facets, of_facets) ? hf_tolerance_measure_word[of_facets] : NULL;
-}
-
-static hf_status check_measures(const hf_problem *p, hf_messages *messages)
-{
-    const hf_case *c = &p->settings;
-    hf_status status = HF_OK;
-    for (int i = 0; i < c->tolerance.n_require; i++) {
-        char place[HF_LOCATION_SIZE];
-        hf_tolerance_measure measure = c->tolerance.require[i].measure;
-        hf_gain_beam beam;
-        const char *fault = NULL, *better = loss_of_nodes(p, measure);
-        if (better)
-            hf_warning(messages,
-                       "tolerance.require.%d.measure: %s counts the nodes only, but %s also includes the facets "
-                       "between the nodes",
-                       i, hf_tolerance_measure_word[measure], better);
-        if (!hf_montecarlo_measures(&p->surface, &p->facets, measure))
-            fault = "this net has no facets";
-        else if (measure == HF_TOLERANCE_PATTERN_LOSS && !make_beam(p, &beam))
-            fault = HF_GAIN_TOO_COARSE;
-        if (!fault) continue;
-        status = hf_error(messages, HF_BAD_CASE, "%s: hifdm cannot compute the measure %s: %s",
-                          hf_config_place(c, place, "tolerance.require.%d.measure", i),
-                          hf_tolerance_measure_word[measure], fault);
-    }
-    return status;
 }
 
 static hf_status check_expansion(const hf_problem *p, const hf_material *t, hf_messages *messages)
@@ -206,16 +171,15 @@ hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_mes
                         p->settings.path);
     hf_material material;
     char place[HF_LOCATION_SIZE];
-    hf_status status = make_material(p, &material, messages), other[6] = {HF_OK};
+    hf_status status = make_material(p, &material, messages), other[5] = {HF_OK};
     if (status != HF_NO_MEMORY) other[2] = check_cuts(p, &material, messages);
     hf_material_free(&material);
     place_section(&p->settings, place);
     other[0] = hf_cable_demand_EA(&p->scene, place, "errors of as-built nets need", "", messages);
-    other[1] = check_measures(p, messages);
-    other[3] = check_struts(p, messages);
-    other[4] = check_truss_heat(p, messages);
-    other[5] = check_load_errors(p, messages);
-    for (int i = 0; i < 6 && status == HF_OK; i++)
+    other[1] = check_struts(p, messages);
+    other[3] = check_truss_heat(p, messages);
+    other[4] = check_load_errors(p, messages);
+    for (int i = 0; i < 5 && status == HF_OK; i++)
         status = other[i];
     return status;
 }
@@ -457,7 +421,7 @@ static hf_status sum_up(job *j, hf_store *store, hf_summary *summary, hf_message
     hf_status status = hf_statistics_sum_up(&j->montecarlo, &rows, to);
     if (status == HF_OK && j->requirements)
         status = hf_requirements_stage_judge_samples(j->requirements, &j->montecarlo, &rows, summary, messages);
-    if (status == HF_OK && t->required_yield > 0) {
+    if (status == HF_OK && t->find_scale) {
         to->scale_samples = scale_samples(t);
         j->montecarlo.tell = report_scale;
         j->montecarlo.tell_context = j;
@@ -514,7 +478,8 @@ static hf_status try_samples(job *j, double most_s, hf_tolerance_trial *trial, h
         trial->sample_s = trial->scale_sample_s = took_s / n;
         trial->n_tried = n;
     }
-    if (!trial->n_tried || !trial->scale_yields || hf_montecarlo_requires_surface(&p->settings.tolerance)) return HF_OK;
+    if (!trial->n_tried || !trial->scale_yields || hf_required_needs_surface(j->montecarlo.required, true, 0))
+        return HF_OK;
     j->montecarlo.skips_surface = true;
     HF_TRY(hf_montecarlo_run(&j->montecarlo, 1, 0, trial->n_tried));
     trial->scale_sample_s = (hf_clock_thread_cpu_s() - now_s) / trial->n_tried;
@@ -543,7 +508,7 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
     double rows = 3.0 * p->model.n_free, solves = 3.0 * p->model.n_inner_node;
     *trial =
         (hf_tolerance_trial){.begin_s = solves * 4 * rows * (3.0 * p->model.half_bandwidth + 2) / OPERATIONS_PER_S};
-    if (p->settings.tolerance.required_yield > 0) {
+    if (p->settings.tolerance.find_scale) {
         trial->scale_yields = HF_SCALE_YIELDS;
         trial->scale_samples = scale_samples(&p->settings.tolerance);
     }

@@ -15,7 +15,7 @@ static inline bool hf_tolerance_stage_is_task(const hf_run_request *request)
 void hf_tolerance_stage_end(const hf_run_request *request, const char *output);
 
 /* Refuses a case for which hf_stage_samples would fail before it solves anything: cables without EA or expansion,
- * struts, errors that may leave nothing of a cable, measures that the net does not have. Returns HF_OK or HF_BAD_CASE.
+ * struts, errors that may leave nothing of a cable. Returns HF_OK or HF_BAD_CASE.
  * Without a section `tolerance` it returns HF_OK, or HF_BAD_USAGE if is_demanded. */
 hf_status hf_tolerance_stage_check(const hf_problem *problem, bool is_demanded, hf_messages *messages);
 
@@ -25,11 +25,11 @@ hf_status hf_tolerance_stage_look(const hf_run_request *request, const hf_proble
                                   hf_messages *messages);
 
 /* Estimated processor time of the samples of a run, s. begin_s is the time until the first sample, mostly for the first
- * order, and sample_s that of one sample in the nominal load case and in the n_load_case others that `requirements` need, from
- * n_tried samples in one thread. n_tried is 0 if counted operations predict a begin_s above most_s; begin_s is then
- * that prediction. The search for the scale (tolerance.required_yield) takes up to scale_yields yields of scale_samples
- * nets, at scale_sample_s each. Most yields end early: scale_s is the time of the search, extrapolated from one with
- * few nets, or 0 if that would not fit into half of most_s. */
+ * order. sample_s is that of one sample in the nominal load case and in the n_load_case others that `requirements`
+ * need, from n_tried samples in one thread. n_tried is 0 if counted operations predict a begin_s above most_s; begin_s
+ * is then that prediction. The search for the scale (tolerance.find_scale) takes up to scale_yields yields of
+ * scale_samples nets, at scale_sample_s each. Most yields end early: scale_s is the time of the search, extrapolated
+ * from one with few nets, or 0 if that would not fit into half of most_s. */
 typedef struct {
     double begin_s, sample_s, scale_sample_s, scale_s;
     int n_load_case, scale_yields, scale_samples, n_tried;

@@ -35,20 +35,6 @@ static const hf_layout_field measured_field[] = {
                         QUANTILE("quantile_high", high,
                                  "95 % interval of each, by order statistics: its upper end; NaN: too few samples")};
 
-/* A row of tolerance.require. */
-typedef struct {
-    char word[WORD_SIZE];
-    hf_require_settings row;
-    double yield;
-} required;
-
-#define REQUIRED(name, member, kind, description) HF_LAYOUT_MEMBER(required, name, member, kind, "", description)
-static const hf_layout_field required_field[] = {
-    REQUIRED("require_measure", word, CHARS, "rows of tolerance.require")
-        REQUIRED("require_at_most", row.at_most, REAL, "upper bound; NaN: none")
-            REQUIRED("require_at_least", row.at_least, REAL, "lower bound; NaN: none")
-                REQUIRED("require_yield", yield, REAL, "share of the samples that meet this row")};
-
 #define SHARE(name, member, kind, description)                                                                         \
     HF_LAYOUT_FIELD(hf_tolerance_summary, name, member, kind, "", description)
 static const hf_layout_field ranked_field[] = {
@@ -72,7 +58,6 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
 {
     hf_tolerance_summary *s = summary->tolerance;
     measured figures[HF_TOLERANCE_N_MEASURE] = {{{0}, 0, {0}}};
-    required rows[HF_REQUIRE_ROWS_MAX] = {{{0}, {0}, 0}};
     char kind[HF_TOLERANCE_KINDS][WORD_SIZE] = {{0}};
     if (!s) return;
     for (int k = 0; k < HF_TOLERANCE_N_MEASURE; k++) {
@@ -80,18 +65,12 @@ void hf_layout_put_tolerance(hf_hdf5 *io, const hf_summary *summary)
         figures[k].figures = s->figure[k];
         strncpy(figures[k].word, hf_tolerance_measure_word[k], WORD_SIZE - 1);
     }
-    for (int k = 0; k < s->n_require; k++) {
-        rows[k].row = s->require[k];
-        rows[k].yield = s->require_yield[k];
-        strncpy(rows[k].word, hf_tolerance_measure_word[s->require[k].measure], WORD_SIZE - 1);
-    }
     for (int k = 0; k < HF_TOLERANCE_KINDS; k++)
         strncpy(kind[k], hf_tolerance_kind_word[k], WORD_SIZE - 1);
     hid_t group = hf_hdf5_make_group(io, GROUP);
     const hf_hdf5_array kinds = {"error_kind", HF_KIND_CHARS,    1, {HF_TOLERANCE_KINDS, WORD_SIZE},
                                  "",           "kinds of errors"};
     hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(measured_field), HF_TOLERANCE_N_MEASURE, 0, figures);
-    hf_layout_pass_fields(io, true, group, HF_LAYOUT_TABLE(required_field), s->n_require, 0, rows);
     hf_hdf5_write_array(io, group, &kinds, kind);
     pass_shares(io, true, group, HF_TOLERANCE_KINDS, s);
     hf_hdf5_close(io, group);
@@ -139,20 +118,6 @@ static int length_of(hf_hdf5 *io, hid_t group, const char *name, int max)
     return hf_hdf5_has(io, group, name) ? hf_hdf5_length(io, group, name, max) : 0;
 }
 
-static void get_requirements(hf_hdf5 *io, hid_t group, hf_tolerance_summary *s)
-{
-    required rows[HF_REQUIRE_ROWS_MAX] = {{{0}, {0}, 0}};
-    s->n_require = length_of(io, group, "require_yield", HF_REQUIRE_ROWS_MAX);
-    hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(required_field), s->n_require, 0, rows);
-    for (int k = 0; k < s->n_require && io->status == HF_OK; k++) {
-        rows[k].row.measure = measure_of(rows[k].word);
-        if (rows[k].row.measure == HF_TOLERANCE_N_MEASURE)
-            hf_hdf5_damaged(io, group, "require_measure", "names what is not measured");
-        s->require[k] = rows[k].row;
-        s->require_yield[k] = rows[k].yield;
-    }
-}
-
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
 {
     measured figures[HF_TOLERANCE_N_MEASURE] = {{{0}, 0, {0}}};
@@ -163,7 +128,6 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     int n = hf_hdf5_length(io, group, "measure", HF_TOLERANCE_N_MEASURE);
     hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(measured_field), n, 0, figures);
     if (io->status == HF_OK) take_measures(n, figures, s);
-    get_requirements(io, group, s);
     s->n_ranked = length_of(io, group, "ranked_share", HF_TOLERANCE_RANKED);
     /* Version 0.1 had fewer kinds. */
     pass_shares(io, false, group, hf_hdf5_length(io, group, "kind_share", HF_TOLERANCE_KINDS), s);

@@ -91,8 +91,7 @@ static const struct {
                        {"/load_cases/", "tension_max_N", "largest_tension_N"},
                        {"/load_cases/", "displacement_rms_m", "move_rms_m"},
                        {"/load_cases/", "member_force_max_N", "largest_member_N"},
-                       {"/load_cases/", "coupling_deflection_max_m", "coupling_max_displacement_m"},
-                       {"/tolerance", "required_yield", "wanted_yield"}};
+                       {"/load_cases/", "coupling_deflection_max_m", "coupling_max_displacement_m"}};
 
 static const char *const search_table[] = {"solver",      "n_leader",   "planes",     "generations",
                                            "evaluations", "infeasible", "store_cpu_s"};

@@ -261,20 +261,6 @@ static void write_figures(const hf_tolerance_figures *f, const char *measure, hf
     hf_json_close(j, '}');
 }
 
-static void write_requirements(const hf_tolerance_summary *t, hf_json *j)
-{
-    hf_json_open_line(j, "  ", "require", '[');
-    for (int k = 0; k < t->n_require; k++) {
-        hf_json_open(j, NULL, '{');
-        hf_json_text(j, "measure", hf_tolerance_measure_word[t->require[k].measure]);
-        hf_json_number(j, "at_most", t->require[k].at_most);
-        hf_json_number(j, "at_least", t->require[k].at_least);
-        hf_json_number(j, "yield", t->require_yield[k]);
-        hf_json_close(j, '}');
-    }
-    hf_json_close(j, ']');
-}
-
 /* Writes the members "verdict" and "requirements": the verdict on all rows, and an object for each row. */
 static void write_verdicts(const hf_summary *s, hf_json *j)
 {
@@ -318,7 +304,6 @@ static void write_tolerance(const hf_summary *s, hf_json *j)
             const hf_tolerance_figures known = known_figures(&t->figure[k], hf_tolerance_measure_word[k]);
             write_figures(&known, hf_tolerance_measure_word[k], j);
         }
-    write_requirements(t, j);
     write_shares(t, j);
     hf_json_list(j, "histogram_range_m", (const double[]){t->bin_low_m, t->bin_high_m}, 2);
     hf_json_list(j, "histogram", t->bin, HF_TOLERANCE_BINS);

@@ -161,7 +161,7 @@ START_TEST(no_cable_is_let_out_until_it_is_slack)
 }
 END_TEST
 
-/* Of tensions after the moves, nine tenths of what is asked for, by tolerance.require or optimize.limits; without
+/* Of tensions after the moves, nine tenths of what is asked for, by requirements or optimize.limits; without
  * either less is left. */
 START_TEST(least_tensions_are_asked_for)
 {
@@ -177,10 +177,10 @@ START_TEST(least_tensions_are_asked_for)
     SHELL(0, least, moves, "-1", "4");
     HIFDM(0, LET_OUT, "--json"); /* nor is any cable slack on the way */
     ck_assert_int_eq(count_of(said.out, "\"slack\": 0"), 8);
-    HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: tension_min_N, at_least: 5}]");
+    HIFDM(0, LET_OUT, "--set", "requirements=[{figure: tension, at_least: 5, share: 0.9}]");
     ck_assert_ptr_null(strstr(said.out, "may not lose tension"));
     SHELL(0, least, moves, "4.5", "1e3");
-    HIFDM(0, LET_OUT, "--set", "tolerance.require=[{measure: tension_min_N, at_least: 5e5}]");
+    HIFDM(0, LET_OUT, "--set", "requirements=[{figure: tension, at_least: 5e5}]");
     OUT("cables have less than the required 5e+05 N already and may not lose tension");
     HIFDM(0, LET_OUT, "--set", "optimize.limits=[{figure: tension, set: boundary, bounds: [8, 1e4]}]");
     SHELL(0, least, moves, "7.2", "1e3");

@@ -200,9 +200,9 @@ START_TEST(every_word_is_explained)
           "optimize.front_points=5");
     json[1] = out_as("front.json");
     HIFDM(0, "run",
-          file_with("built.yaml",
-                    SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\ntolerance: {sigma_cut_m: 1e-4, "
-                                "samples: 50, required_yield: 0.9, require: [{measure: psi_m, at_most: 1}]}\n"),
+          file_with("built.yaml", SMALL_SCENE
+                    "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\ntolerance: {sigma_cut_m: 1e-4, "
+                    "samples: 50, find_scale: true}\nrequirements: [{figure: psi, at_most: 1, share: 0.9}]\n"),
           "-o", built, "--json");
     json[2] = out_as("built.json");
     HIFDM(0, "run", keep(source_path("configs/paraboloid-load-cases.yaml")), "-o", states, "--json");
@@ -328,8 +328,8 @@ START_TEST(explain_helps_with_slips)
         HIFDM(0, "explain", asked[i]);
     HIFDM(0, "explain", "front_points");
     OUT("optimize.front_points (key of the case file)\n");
-    HIFDM(0, "explain", "tolerance.require.at_most");
-    OUT("tolerance.require.at_most (key of the case file");
+    HIFDM(0, "explain", "requirements.at_most");
+    OUT("requirements.at_most (key of the case file");
     HIFDM(2, "explain", "best", "fitt");
     ERR("the glossary has no entry 'best fitt'; did you mean 'best fit'?");
     HIFDM(2, "explain", "rope");

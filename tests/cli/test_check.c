@@ -54,15 +54,16 @@ START_TEST(check_tells_how_long_yields_take)
 {
     const char *text = "scene:\n  paraboloid: {aperture_m: 4, focal_length_m: 2.4, rings: 3, rear_distance_m: 1.2}\n"
                        "  EA_inner_N: 5000\n  EA_boundary_N: 5000\nform: {prestress: exact}\nsurface: {}\n"
-                       "tolerance: {sigma_cut_m: 1e-5, required_yield: 0.9, require: [{measure: %s, at_most: 1e-3}]}\n";
+                       "tolerance: {sigma_cut_m: 1e-5, find_scale: true}\n"
+                       "requirements: [{figure: %s, at_most: 1e-3, share: 0.9}]\n";
     const char *words = "of 1000 nets more, most of them ended early: some ";
-    HIFDM(0, "check", file_with("case.yaml", formatted(text, "half_path_rms_m")));
+    HIFDM(0, "check", file_with("case.yaml", formatted(text, "surface")));
     double surface_s = told_s(words);
-    HIFDM(0, "check", file_with("case.yaml", formatted(text, "psi_m")));
-    OUT("tolerance.required_yield: up to 18 yields of 1000 nets more, most of them ended early: some ");
+    HIFDM(0, "check", file_with("case.yaml", formatted(text, "psi")));
+    OUT("tolerance.find_scale: up to 18 yields of 1000 nets more, most of them ended early: some ");
     double psi_s = told_s(words);
     ck_assert_double_lt(psi_s, surface_s / 2);
-    HIFDM(0, "check", temp("case.yaml"), "--set", "tolerance.require.0.at_most=1e-2"); /* nets far from their design */
+    HIFDM(0, "check", temp("case.yaml"), "--set", "requirements.0.at_most=1e-2"); /* nets far from their design */
     ck_assert_double_gt(told_s(words), 2 * psi_s);
 }
 END_TEST
@@ -79,7 +80,7 @@ START_TEST(check_tells_how_long_samples_take)
     OUT(" for 5000 nets on ");
     HIFDM(0, "check", file_with("case.yaml", formatted(text, 3, "")));
     OUT(" tried); with first order about ");
-    ck_assert_ptr_null(strstr(said.out, "tolerance.required_yield"));
+    ck_assert_ptr_null(strstr(said.out, "tolerance.find_scale"));
     HIFDM(0, "check", file_with("case.yaml", formatted(text, 24, "")));
     OUT("as built: first order some ");
     OUT(" of processor time, counted; samples not tried\n");

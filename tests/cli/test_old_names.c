@@ -25,11 +25,13 @@ static const line rows[] = {
      {"52: " IS_NOW("adjust.moves", "adjust.max_adjustments"),
       "67: " IS_NOW("adjust.aim=theory", "adjust.aim=target_positions")}},
     {"tolerance: {sigma_cut_m: 1e-5, samples: 20, yield: 0.5,\n",
-     "tolerance: {sigma_cut_m: 1e-5, samples: 20, required_yield: 0.5,\n",
-     {"45: " IS_NOW("tolerance.yield", "tolerance.required_yield")}},
+     "tolerance: {sigma_cut_m: 1e-5, samples: 20, find_scale: true}\n",
+     {NULL}},
     {"  require: [{measure: least_tension_N, at_least: 0}]}\n",
-     "  require: [{measure: tension_min_N, at_least: 0}]}\n",
-     {"23: " IS_NOW("tolerance.require.0.measure=least_tension_N", "tolerance.require.0.measure=tension_min_N")}},
+     "requirements: [{figure: tension, at_least: 0, share: 0.5, search: off}]\n",
+     {"13: tolerance.require.0: this list is now `requirements`. Write `requirements: [{figure: tension, at_least: 0, "
+      "share: 0.5, search: off}]` and `find_scale: true` in tolerance instead, because version 0.4 refuses the old "
+      "keys\n"}},
     {"optimize:\n", "optimize:\n", {NULL}},
     {"  population: 6\n", "  population: 6\n", {NULL}},
     {"  generations: 3\n", "  generations: 3\n", {NULL}},
@@ -146,6 +148,60 @@ START_TEST(overrides_may_have_old_names)
     }
     HIFDM(2, "check", temp("now.yaml"), "--set", "optimize.polish_iterations=0");
     ERR("error: --set optimize.polish_iterations=0: optimize.refine_steps: must be at least 1");
+}
+END_TEST
+
+/* ---- tolerance.require ---- */
+
+#define BUILT                                                                                                          \
+    SMALL_SCENE "  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\nsurface: {frequencies_Hz: [2e8, 1e9]}\n"                     \
+                "tolerance: {sigma_cut_m: 1e-4, samples: 40%s}\n"
+
+/* Each measure becomes a figure with its feed. A loss at 1 GHz becomes the RMS that Ruze's formula gives it: 1 dB is
+ * c sqrt(ln 10 / 10) / (4 pi f) = 11.448 mm. Above 3 dB, the losses were infinite. Without required_yield the share is
+ * 0.95, and 40 samples are too few for a pass, but no error. */
+START_TEST(old_requirements_become_rows)
+{
+    static const char *const row[][2] = {
+        {"psi_m, at_most: 0.123456789", "psi, at_most: 0.123456789"},
+        {"half_path_rms_m, at_most: 1, at_least: 0", "surface, feed: fixed, at_least: 0, at_most: 1"},
+        {"fit_half_path_rms_m, at_most: 1", "surface, at_most: 1"},
+        {"facet_half_path_rms_m, at_most: 1", "facets, feed: fixed, at_most: 1"},
+        {"facet_fit_half_path_rms_m, at_most: 1", "facets, at_most: 1"},
+        {"gain_loss_dB, at_most: 1", "surface, feed: fixed, at_most: 0.01144771"},
+        {"facet_fit_gain_loss_dB, at_most: 4", "facets, at_most: 0.01982801"},
+        {"pattern_loss_dB, at_most: 9", "gain_loss, feed: fixed, at_most: 9"},
+        {"tension_min_N, at_least: 1", "tension, at_least: 1"},
+        {"n_slack, at_most: 0", "slack_cables, at_most: 0"},
+        {"n_loose, at_most: 0", "loose_nodes, at_most: 0"}};
+    for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+        const char *c = file_with("c.yaml", formatted(BUILT, keep(formatted(", require: [{measure: %s}]", row[k][0]))));
+        HIFDM(0, "check", c);
+        ERRS("%s:6:55: tolerance.require.0: this list is now `requirements`. Write `requirements: [{figure: %s", c,
+             row[k][1]);
+        ERR(", share: 0.95, search: off}]` instead, because version 0.4 refuses the old keys\n");
+        ck_assert_int_eq(count_of(said.err, "warning: "), 1);
+    }
+    HIFDM(0, "run", temp("c.yaml"), "-o", temp("a.h5"));
+    OUT("verdict: ");
+    EXPECT(temp("a.h5"), "--", "a['requirements/share'][0] == 0.95 and a['requirements/at_most'][0] == 0",
+           "texts(a['requirements/load_case']) == ['nominal']", "np.isnan(a['tolerance'].attrs['sigma_scale'])");
+}
+END_TEST
+
+START_TEST(faults_of_old_requirements)
+{
+    static const char *const fault[][2] = {
+        {", required_yield: 0.9",
+         "6:61: tolerance.required_yield: is an old key; write it as figure, bound and share of the rows of "},
+        {", require: [{measure: psi_m, at_most: 1}]}\nrequirements: [{figure: psi, at_most: 1}]\nnodes: []\n#",
+         "6:55: tolerance.require.0: is an old key"},
+        {", require: [{at_most: 1}]", "6:55: tolerance.require.0.measure: is missing"},
+        {", require: [{measure: psi_m}]", "6:65: requirements.0.figure: has no bound"}};
+    for (size_t k = 0; k < sizeof fault / sizeof *fault; k++) {
+        HIFDM(2, "check", file_with("f.yaml", formatted(BUILT, fault[k][0])));
+        ERRS("f.yaml:%s", fault[k][1]);
+    }
 }
 END_TEST
 
@@ -288,6 +344,8 @@ Suite *suite_cli_old_names(void)
     tcase_add_loop_test(tests, an_old_case_has_the_result_of_the_new_one, 0, 2);
     tcase_add_test(tests, overrides_may_have_old_names);
     tcase_add_loop_test(tests, both_names_of_a_key_are_an_error, 0, (int)(sizeof twice / sizeof *twice));
+    tcase_add_test(tests, old_requirements_become_rows);
+    tcase_add_test(tests, faults_of_old_requirements);
     tcase_add_test(tests, reserved_names_of_load_cases);
     tcase_add_test(tests, axes_may_have_old_names);
     tcase_add_test(tests, old_words_of_axes);

@@ -75,7 +75,7 @@ def main(path):
     with h5py.File(path) as f:
         overrides = dict(line.split("=") for line in f["case/overrides"][()].decode().split() if "=" in line)
         case = yaml.safe_load(f["case/text"][()].decode())["tolerance"]
-        case.update({key.split(".")[1]: float(value) for key, value in overrides.items() if key.startswith("tol")})
+        case.update({key.split(".")[1]: value for key, value in overrides.items() if key.startswith("tol")})
         case = {key: float(value) for key, value in case.items() if key in
                 ("sigma_cut_m", "sigma_cut_ratio", "sigma_EA_ratio", "sigma_support_m", "batch", "samples")}
         scene, found = f["scene"], f["form"]

@@ -556,9 +556,6 @@ function writePoints(study, axes, figures, best) {
           { name: "Tightest requirement and its margin", of: (i) => study.tightest[i], show: tightestCell },
         ]
       : []),
-    ...(study.meets_yield.some((a) => a)
-      ? [{ name: "Meets required yield", of: (i) => study.meets_yield[i], show: (i) => study.meets_yield[i] || "–" }]
-      : []),
     ...figures
       .filter(isInTable)
       .flatMap((f) =>
@@ -570,11 +567,6 @@ function writePoints(study, axes, figures, best) {
   ];
   const notes = [];
   if (fixed.length) notes.push(`All points have ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
-  if (study.meets_yield.includes("open"))
-    notes.push(
-      "A point is open if the required yield lies within the 95 % confidence interval of the computed yield. " +
-        "Compute more samples of each open point.",
-    );
   if (study.ranked_by) notes.push(`The points are ranked by ${study.ranked_by}.`);
   if (best >= 0) notes.push(`The ${bestWord(study)} point is marked. Click a column heading to sort the table.`);
   if (study.page.some((p) => p))
@@ -629,7 +621,7 @@ function writeStudy(study) {
     varying = axes.filter((a) => a.varies);
   const mainStage = study.main,
     figures = readFigures(study, mainStage),
-    { best, required_yield: required } = study;
+    best = study.best;
   const leads = study.figure.find((f) => f.lead) || {};
   for (const f of figures) f.isLead = f.key === leads.key;
   const lead = figures.find((f) => f.isLead),
@@ -673,12 +665,6 @@ function writeStudy(study) {
         : varying.filter(matters).map((a) => figure(`${best_is} ${a.name}`, a.label(best), a.unit)),
       isJudged(study)
         ? figure("points pass", `${fmtCount(count((_, i) => study.verdict[i] === "pass"))} of ${fmtCount(study.n)}`)
-        : null,
-      study.meets_yield.some((a) => a)
-        ? figure(
-            `points with ${required ? `a yield of ${fmt(100 * required)}\u00a0%` : "their required yield"}`,
-            `${fmtCount(study.meets_yield.filter((a) => a === "yes").length)} of ${fmtCount(study.n)}`,
-          )
         : null,
       figure("points done", `${fmtCount(count((s) => s === "ok"))} of ${fmtCount(study.n)}`),
       failed ? figure("failed", fmtCount(failed)) : null,

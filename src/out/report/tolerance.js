@@ -19,8 +19,8 @@ function toleranceMarks(t, [low, high]) {
   const all = [
     { name: "without errors", at: t.nominal_psi_m, colour: "--three", dash: "2 3" },
     { name: "95 % of the samples are below", at: t.psi_95_m, colour: "--two" },
-    ...t.require
-      .filter(({ measure }) => measure === "psi_m")
+    ...(summary.requirements || [])
+      .filter(({ figure, load_case: of, share }) => figure === "psi" && share && (of === "nominal" || of === "all"))
       .flatMap((row) => [
         { name: "required maximum", at: row.at_most, say: fmt, colour: "--four", dash: "7 3" },
         { name: "required minimum", at: row.at_least, say: fmt, colour: "--four", dash: "7 3" },
@@ -118,21 +118,17 @@ function requirementChart(row, c) {
 function scaleText(t) {
   if (typeof t.sigma_scale !== "number") return "";
   if (!(t.sigma_scale > 0))
+    return " The required shares are impossible, because the net fails a requirement even without errors.";
+  const part = percent(t.sigma_scale, 4);
+  if (t.scale_bound < 0 || t.sigma_scale < 1)
     return (
-      ` A yield of ${percent(t.required_yield)} is impossible, ` +
-      "because the net fails a requirement even without errors."
+      " To obtain the required shares, reduce all tolerances to " +
+      `${t.scale_bound < 0 ? "less than " : ""}${part} of their values.`
     );
-  const part = percent(t.sigma_scale, 4),
-    required = percent(t.required_yield);
-  if (t.scale_bound > 0)
-    return (
-      ` If all tolerances are increased to ${part} of their values, the yield is at least ${required}.` +
-      " Larger tolerances were not tried."
-    );
-  if (t.scale_bound < 0)
-    return ` To obtain a yield of ${required}, reduce all tolerances to less than ${part} of their values.`;
-  if (t.sigma_scale < 1) return ` To obtain a yield of ${required}, reduce all tolerances to ${part} of their values.`;
-  return ` If all tolerances are increased to ${part} of their values, the yield is at least ${required}.`;
+  return (
+    ` If all tolerances are increased to ${part} of their values, the samples still have the required shares.` +
+    (t.scale_bound > 0 ? " Larger tolerances were not tried." : "")
+  );
 }
 
 function toleranceText(t) {

@@ -11,6 +11,9 @@ typedef struct {
     hf_workspace work;
     hf_tolerance_settings settings;
     hf_montecarlo m;
+    hf_load_cases load_cases; /* none */
+    hf_requirement_settings row;
+    hf_required required;
 } study;
 
 static void begin(study *s, int threads)
@@ -36,9 +39,19 @@ static void forget_psi(study *s)
 static void close_study(study *s)
 {
     hf_montecarlo_free(&s->m);
+    hf_required_free(&s->required);
     hf_workspace_free(&s->work);
     hf_built_free(&s->built);
     close_design(&s->net);
+}
+
+/* Requires psi of a share of the samples, after begin(). */
+static void require_psi(study *s, double share, double at_most_m)
+{
+    s->row = (hf_requirement_settings){HF_REQUIRED_PSI, "",  HF_REFOCUSED, "nominal",    (double)NAN,
+                                       at_most_m,       {0}, share,        HF_SEARCH_OFF};
+    ck_assert_int_eq(hf_required_create(1, &s->row, &s->net.scene, &s->load_cases, NULL, &s->required), HF_OK);
+    ck_assert_int_eq(hf_montecarlo_require(&s->m, &s->required, NULL, NULL), HF_OK);
 }
 
 /* ---- by hand ---- */
@@ -332,8 +345,8 @@ static void hear_scale(void *context, double scale)
     to->largest = fmax(to->largest, scale);
 }
 
-/* The yield falls as errors grow: the scale that is found has it, a little more has not. */
-START_TEST(a_scale_has_the_wanted_yield)
+/* The share falls as errors grow: the scale that is found has it, a little more has not. */
+START_TEST(a_scale_has_the_required_share)
 {
     static study s;
     told all = {0};
@@ -341,10 +354,8 @@ START_TEST(a_scale_has_the_wanted_yield)
     int bound;
     open_study(&s, 4, false);
     forget_psi(&s);
-    s.settings.n_require = 1;
-    s.settings.require[0] = (hf_require_settings){HF_TOLERANCE_PSI, 1e-4, (double)NAN};
-    s.settings.required_yield = 0.9;
     begin(&s, 2);
+    require_psi(&s, 0.9, 1e-4);
     s.m.tell = hear_scale;
     s.m.tell_context = &all;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 200, &scale, &bound), HF_OK);
@@ -354,7 +365,7 @@ START_TEST(a_scale_has_the_wanted_yield)
         int met = 0;
         ck_assert_int_eq(hf_montecarlo_run(&s.m, k ? 1.0055 * scale : scale, 0, 200), HF_OK);
         for (int i = 0; i < 200; i++)
-            met += hf_montecarlo_meets_all(&s.settings, s.m.row + i * HF_TOLERANCE_COLUMNS);
+            met += s.m.row[i * s.m.n_value + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI] <= 1e-4;
         ck_assert(k ? met < 180 : met >= 180);
     }
     close_study(&s);
@@ -372,26 +383,24 @@ START_TEST(scales_end_where_nets_do)
     open_study(&s, 4, false);
     s.settings.sigma_EA_ratio = 0.04;
     s.settings.distribution = (hf_distribution)_i;
-    s.settings.n_require = 1;
-    s.settings.require[0] = (hf_require_settings){HF_TOLERANCE_PSI, 1e3, (double)NAN};
-    s.settings.required_yield = 0.5;
     begin(&s, 2);
+    require_psi(&s, 0.5, 1e3);
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
     ck_assert_int_eq(bound, 1);
     ck_assert_double_eq_tol(scale, 0.5 / 0.04 / (_i == HF_DISTRIBUTION_UNIFORM ? sqrt(3) : 6), 1e-12);
     double nominal_m = s.m.covariance.nominal_psi_m;
-    s.settings.require[0].at_most = 0.9 * nominal_m;
+    s.row.at_most = 0.9 * nominal_m;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
     ck_assert(scale == 0 && bound == 0);
-    s.settings.require[0].at_most = nominal_m * (1 + 1e-9);
-    s.settings.required_yield = 0.9;
+    s.row.at_most = nominal_m * (1 + 1e-9);
+    s.row.share = 0.9;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
     ck_assert(scale == ldexp(1, -10) && bound == -1);
     ck_assert_int_eq(hf_montecarlo_run(&s.m, 1.5 * scale, 0, 20), HF_OK); /* found after all halves of 1 */
     for (int i = 0; i < 20; i++)
-        largest_m = fmax(largest_m, s.m.row[i * HF_TOLERANCE_COLUMNS + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI]);
-    s.settings.require[0].at_most = largest_m;
-    s.settings.required_yield = 1;
+        largest_m = fmax(largest_m, s.m.row[i * s.m.n_value + HF_TOLERANCE_FIRST + HF_TOLERANCE_PSI]);
+    s.row.at_most = largest_m;
+    s.row.share = 1;
     s.m.tell = hear_scale;
     s.m.tell_context = &all;
     ck_assert_int_eq(hf_montecarlo_find_scale(&s.m, 20, &scale, &bound), HF_OK);
@@ -601,7 +610,7 @@ Suite *suite_unit_tolerance(void)
     tcase_add_loop_test(tcase, small_errors_tend_to_first_order, 0, 4);
     tcase_add_loop_test(tcase, samples_and_control_variate_agree, 0, 4);
     tcase_add_loop_test(tcase, rows_have_the_same_bits, 0, 4);
-    tcase_add_test(tcase, a_scale_has_the_wanted_yield);
+    tcase_add_test(tcase, a_scale_has_the_required_share);
     tcase_add_loop_test(tcase, scales_end_where_nets_do, 0, 2);
     tcase_add_test(tcase, loose_nodes_are_in_psi);
     tcase_add_test(tcase, points_come_in_any_order);

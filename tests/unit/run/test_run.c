@@ -12,8 +12,8 @@ static const char case_text[] = "scene: {parabolic_cylinder: {aperture_m: 2, len
                                 "  EA_boundary_N: 47000}\n"
                                 "form: {pretension_N: 20}\n"
                                 "optimize: {method: ga+lm, range_N: 2, population: 8, generations: 4, seed: 3}\n"
-                                "tolerance: {sigma_cut_m: 1e-4, samples: 1000, required_yield: 0.9,\n"
-                                "  require: [{measure: psi_m, at_most: 0.1255}]}\n";
+                                "tolerance: {sigma_cut_m: 1e-4, samples: 1000, find_scale: true}\n"
+                                "requirements: [{figure: psi, at_most: 0.1255, share: 0.9}]\n";
 
 enum { N_PHASE = HF_RUN_TOLERANCE + 1 };
 

@@ -159,8 +159,7 @@ START_TEST(rows_of_version_0_2_are_read)
                   {"/polish/polish_iterations", "/refine", "steps", "11"},
                   {"/polish/iterations", "/refine", "iterations", "12"},
                   {"/polish/coupling_max_displacement_m", "/refine", "coupling_deflection_max_m", "0.75"},
-                  {"/coupling/max_displacement_m", "/coupling", "deflection_max_m", "0.0625"},
-                  {"/tolerance/wanted_yield", "/tolerance", "required_yield", "0.95"}};
+                  {"/coupling/max_displacement_m", "/coupling", "deflection_max_m", "0.0625"}};
     static const char lists[] = "goal_0_psi=1 goal_1_displacement=2 goal_2_tension_displacement=3\t"
                                 "facet_half_path_rms_m=4 facet_good_to_Hz=5\tcold.largest_tension_N=6 cold.psi_m=7\n";
     enum { N = sizeof column / sizeof *column };

@@ -24,7 +24,7 @@ KEYS = {  # of figures in a Shape, a Run or a result file
     "polish_is_result": "is_result", "polish_n_at_lower": "n_at_lower", "polish_n_at_upper": "n_at_upper",
     "polish_is_at_cap": "is_at_cap", "polish_n_at_limit": "n_at_limit", "polish_wall_s": "wall_s",
     "least_tension_N": "tension_min_N", "largest_tension_N": "tension_max_N", "move_rms_m": "displacement_rms_m",
-    "largest_member_N": "member_force_max_N", "wanted_yield": "required_yield", "least": "min", "largest": "max",
+    "largest_member_N": "member_force_max_N", "least": "min", "largest": "max",
     "base": "initial", "iterations": "steps",  # the last two: of a front and its points
 }
 
