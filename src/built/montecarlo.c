@@ -274,7 +274,7 @@ static void take_sample(void *context, long i, const hf_built_shape *shape, cons
         min_N = fmin(min_N, shape->tension_N[e]);
     value[HF_TOLERANCE_MIN_TENSION] = min_N;
     if (has_surface(t) && !t->skips_surface) measure_surface(t, shape, &paths, value);
-    if (t->required && !t->skips_surface) measure_required(t, m, 0, t->antenna, shape, r, &paths, row);
+    if (t->required) measure_required(t, m, 0, t->antenna, shape, r, &paths, row);
 }
 
 /* Measures the shape of sample i in a load case, as an hf_built_take. */

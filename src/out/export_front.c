@@ -4,9 +4,9 @@
  *   slope_NAME...,VARIABLE...
  *
  * converged (1 or 0) exists only for fronts by Levenberg-Marquardt, the verdicts only for cases with requirements.
- * slope_NAME is the change of the minimised objective per unit of objective NAME; it is empty where it is unknown. Points
- * are numbered from 1 in the order of the front. `hifdm evaluate` reads the file as a table of designs when the rows of
- * failed points are removed. Numbers have 17 significant digits. */
+ * slope_NAME is the change of the minimised objective per unit of objective NAME; it is empty where it is unknown.
+ * Points are numbered from 1 in the order of the front. `hifdm evaluate` reads the file as a table of designs when the
+ * rows of failed points are removed. Numbers have 17 significant digits. */
 #include "out/export.h"
 
 #include "base/csv.h"

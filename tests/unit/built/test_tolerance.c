@@ -48,8 +48,13 @@ static void close_study(study *s)
 /* Requires psi of a share of the samples, after begin(). */
 static void require_psi(study *s, double share, double at_most_m)
 {
-    s->row = (hf_requirement_settings){HF_REQUIRED_PSI, "",  HF_REFOCUSED, "nominal",    (double)NAN,
-                                       at_most_m,       {0}, share,        HF_SEARCH_OFF};
+    s->row = (hf_requirement_settings){.figure = HF_REQUIRED_PSI,
+                                       .load_case = "nominal",
+                                       .frequency_Hz = (double)NAN,
+                                       .at_least = (double)NAN,
+                                       .at_most = at_most_m,
+                                       .share = share,
+                                       .search = HF_SEARCH_OFF};
     ck_assert_int_eq(hf_required_create(1, &s->row, &s->net.scene, &s->load_cases, NULL, &s->required), HF_OK);
     ck_assert_int_eq(hf_montecarlo_require(&s->m, &s->required, NULL, NULL), HF_OK);
 }
