@@ -301,8 +301,8 @@ static hf_status pick_cables(job *j, hf_messages *messages)
     return n > 0 ? HF_OK : HF_BAD_CASE;
 }
 
-/* Finds the minimum tensions that optimize.limits and `requirements` demand of the net as measured, which is in the
- * nominal load case; 0 for cables without a demand. */
+/* Finds the minimum tensions that optimize.limits and `requirements` demand of the net in the load case in which it was
+ * measured; 0 for cables without a demand. */
 static hf_status find_least(job *j, hf_messages *messages)
 {
     const hf_problem *p = &j->problem;
@@ -318,7 +318,9 @@ static hf_status find_least(job *j, hf_messages *messages)
         }
     for (int k = 0; k < required.n && status == HF_OK; k++) {
         const hf_requirement_settings *row = &required.row[k];
-        if (row->figure != HF_REQUIRED_TENSION || required.low[k] < 0 || !(required.states[k] & 1u)) continue;
+        if (row->figure != HF_REQUIRED_TENSION || required.low[k] < 0 ||
+            !(required.states[k] >> (1 + j->i_load_case) & 1u))
+            continue;
         const hf_required_column *cables = &required.column[required.low[k]];
         for (int i = 0; i < cables->n_cable; i++)
             j->least_N[cables->cable[i]] = fmax(j->least_N[cables->cable[i]], row->at_least);

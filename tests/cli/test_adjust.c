@@ -513,6 +513,22 @@ START_TEST(unknown_load_cases_are_named)
 }
 END_TEST
 
+/* The tensions that adjustments keep are those required in the load case of the measurement. */
+START_TEST(tensions_are_those_of_the_load_case)
+{
+    const char *measured = measured_with("m.csv", HEADER, wave, ""), *low = "less than the required 1000 N already";
+    const char *path = file_with("case.yaml", EA_SCENE SECTIONS
+                                 "load_cases: [{name: calm, force_N: [0, 0, 1e-6]}]\n"
+                                 "requirements: [{figure: tension, at_least: 1000, load_case: calm}]\n");
+    HIFDM(0, "adjust", path, "--measured", measured);
+    ck_assert_ptr_null(strstr(said.out, low));
+    OUT("predicted in load case");
+    HIFDM(0, "adjust", path, "--measured", measured, "--load-case", "calm");
+    OUT("measured in load case 'calm'");
+    OUT(low);
+}
+END_TEST
+
 START_TEST(bad_cases_are_named)
 {
     const char *measured = measured_with("m.csv", HEADER, NULL, "");
@@ -562,6 +578,7 @@ Suite *suite_cli_adjust(void)
     tcase_add_test(tcase, a_warm_truss_is_not_estimated);
     tcase_add_test(tcase, what_is_not_sure_is_told);
     tcase_add_test(tcase, unknown_load_cases_are_named);
+    tcase_add_test(tcase, tensions_are_those_of_the_load_case);
     tcase_add_test(tcase, bad_cases_are_named);
     suite_add_tcase(suite, tcase);
     return suite;
