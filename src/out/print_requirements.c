@@ -123,10 +123,11 @@ void hf_print_requirements(const hf_summary *s, hf_print_style style, FILE *f)
     hf_verdict all = hf_judgement_verdict(&of);
     const char *colour = all == HF_VERDICT_FAIL ? HF_PRINT_RED : all == HF_VERDICT_UNDECIDED ? HF_PRINT_YELLOW : "";
     if (style.has_colour) fprintf(f, "%s%s", HF_PRINT_BOLD, colour);
-    fprintf(f, "verdict%s: %s; %d of %d requirements pass", s->front ? " on the form-finding" : "",
-            hf_verdict_word[all], of.n_required - of.n_failed - of.n_undecided, of.n_required);
+    fprintf(f, "verdict: %s; %d of %d requirements pass", hf_verdict_word[all],
+            of.n_required - of.n_failed - of.n_undecided, of.n_required);
     if (of.n_failed) fprintf(f, ", %d fail%s", of.n_failed, of.n_failed == 1 ? "s" : "");
     if (of.n_undecided) fprintf(f, ", %d undecided", of.n_undecided);
+    if (s->front) fputs("; of the net after form-finding", f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     for (int i = 0; i < n_shown; i++)
         print_row(row[i], width, f);

@@ -56,7 +56,7 @@ START_TEST(points_of_a_front_have_verdicts)
 {
     const char *file = temp("f.h5"), *point = temp("p.h5"), *json;
     HIFDM(0, "run", FRONT, ROWS, "-o", file, "--verbose");
-    OUT("verdict on the form-finding: fail; 2 of 3 requirements pass, 1 fails\n");
+    OUT("verdict: fail; 2 of 3 requirements pass, 1 fails; of the net after form-finding\n");
     OUT("; fails 1 of 3; not converged\n");
     OUT("; passes\n");
     OUT("; requirements: 4 pass, 3 fail, 0 undecided; ");
