@@ -31,6 +31,11 @@
 #define CORRECTIONS_MAX 4   /* corrections of a step that breaks limits [40 passes; with 1, runs stall at a cap] */
 #define DAMPING_OF_WAY 1e3  /* damping on the way into the limits, if less damping fails [1e8 passes; 1 fails] */
 #define WAY_LEAST 1e-3      /* minimum part of the way into the limits that a step takes [1e-2; 1e-6] */
+/* The way ends outside if as many steps together come less than WAY_GAIN nearer: what is broken cannot be met. Steps
+ * that fail halve the way and raise the damping, so there must be more than about 20. A point of a front may be found
+ * only on the long way along a curved limit. */
+#define WAY_STEPS 25
+#define WAY_GAIN 0.01
 /* A tension within this relative distance of its bound counts as being at it. This is twice the distance that a step
  * keeps (LIMIT_INSIDE of watch.c). */
 #define LIMIT_INSIDE 2e-9
@@ -256,6 +261,16 @@ static hf_status tell_watcher(hf_refine_problem *p, const hf_refine_result *r, i
     return p->told = watcher->after(watcher->context, &now);
 }
 
+/* Counts a step outside the limits: settled_steps becomes the number of steps since the violation last fell noticeably.
+ * Inside, the counters begin anew. */
+static void count_way(hf_refine_problem *p)
+{
+    p->settled_steps++;
+    if (p->is_outside && !(p->violation < (1 - WAY_GAIN) * p->settled_merit)) return;
+    p->settled_steps = 0;
+    p->settled_merit = p->is_outside ? p->violation : (double)INFINITY;
+}
+
 /* Moves a start from outside into the limits. Each step aims at a part (`way`) of the way to the linear limits. Limits
  * are not linear: if the step does not come nearer to them, the next one takes half of that part, otherwise twice. Near
  * a curved limit, the part of a step that lowers the merit leads away from the limit. If small parts of the way do not
@@ -265,7 +280,8 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
 {
     double gain;
     hf_watch_forget(&p->watch);
-    while (p->is_outside && (p->way > WAY_LEAST || p->damping < DAMPING_OF_WAY) && r->iterations < max_iterations) {
+    while (p->is_outside && (p->way > WAY_LEAST || p->damping < DAMPING_OF_WAY) &&
+           (p->front || p->settled_steps < WAY_STEPS) && r->iterations < max_iterations) {
         if (p->way <= WAY_LEAST) {
             p->damping = DAMPING_OF_WAY;
             p->way = 1;
@@ -287,6 +303,7 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
             r->merit = hf_refine_merit(p, &p->result);
             HF_TRY(hf_refine_linearise(p));
         }
+        count_way(p);
         HF_TRY(tell_watcher(p, r, max_iterations));
     }
     return HF_OK;
