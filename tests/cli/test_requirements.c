@@ -298,7 +298,7 @@ START_TEST(strict_ends_with_its_own_status)
     ERR("--strict checks requirements, but the case has none");
     HIFDM(6, "run", file_with("c.yaml", formatted(text, "1e-3")), "-o", path, "--restart", "--strict", "--json");
     EXPECT(out_as("a.json"), "--", "a['status'] == 'requirement_failed' and a['finished'] and a['verdict'] == 'fail'",
-           "a['errors'] == ['the result fails 1 of 2 requirements']");
+           "a['errors'] == ['the result fails 1 of 3 requirements']");
 }
 END_TEST
 

@@ -407,6 +407,7 @@ START_TEST(what_errors_may_be_is_told_in_words)
                                                   least[_i]));
     HIFDM(0, "tolerance", c, "-o", path);
     demand_part(said.out, told[_i], __LINE__);
+    HIFDM(0, "show", path, "--verbose");
     OUT("cables that contribute most to the variance of psi: p 100 %\n");
 }
 END_TEST

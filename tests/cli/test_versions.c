@@ -83,9 +83,9 @@ START_TEST(results_of_0_2_0_are_read_by_their_own_names)
     const char *old = result_of("0.2.0", "old.h5"), *now = temp("now.h5");
     HIFDM(0, "run", case_of(old), "-o", now, "--quiet");
     struct command command = run_hifdm("diff", now, old, "--rtol", "1e-6", "--atol", "1e-9");
-    ck_assert_msg(command.exit_code == 1 && strstr(command.out, "232 data sets, 27 differ") &&
+    ck_assert_msg(command.exit_code == 1 && strstr(command.out, "234 data sets, 29 differ") &&
                       strstr(command.out, "/refine_state is not in ") &&
-                      count_of(command.out, "/requirements/") == 21 &&
+                      count_of(command.out, "/requirements/") == 22 &&
                       count_of(command.out, "/tolerance/require_") == 4,
                   "%s%s", command.out, command.err);
     free_command(&command);
