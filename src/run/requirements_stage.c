@@ -202,16 +202,19 @@ hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *q, co
     return hf_statistics_judge(t, rows, s->requirement);
 }
 
-/* Warns about a length or force that is a thousand times off all bounds of its row. Such a bound is probably in mm or
- * kN. A bound of 0 has no unit to be wrong in. */
-#define OTHER_UNIT 1000.0
+/* Warns about a length, force or mass that is far off all bounds of its row. Such a bound is probably in mm, kN or g.
+ * The factor allows that the value is five times off the bound that was meant: with a bound in mm, a value that fails
+ * by 8 % is less than a thousand times off. A bound of 0 has no unit to be wrong in. */
+#define OTHER_UNIT 200.0
 static void doubt_bounds(const hf_requirement_verdict *v, int i, hf_messages *messages)
 {
     const hf_requirement_settings *r = &v->row;
-    const char *unit = hf_required_figure_unit[r->figure], *small = *unit == 'm' ? "mm" : "mN", *key = NULL;
+    const char *unit = hf_required_figure_unit[r->figure], *small = *unit == 'm' ? "mm" : *unit == 'k' ? "g" : "mN";
+    const char *key = NULL;
     const double bounds[2] = {r->at_least, r->at_most};
     double nearest = INFINITY, bound = 0;
-    if ((strcmp(unit, "m") != 0 && strcmp(unit, "N") != 0) || !(fabs(v->value) > 1e-9)) return;
+    if ((strcmp(unit, "m") != 0 && strcmp(unit, "N") != 0 && strcmp(unit, "kg") != 0) || !(fabs(v->value) > 1e-9))
+        return;
     for (int k = 0; k < 2; k++) {
         double factor = bounds[k] > 0 ? bounds[k] / fabs(v->value) : (double)NAN;
         if (!(fmax(factor, 1 / factor) < nearest)) continue;
