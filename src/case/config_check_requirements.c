@@ -100,6 +100,17 @@ static bool is_same_quantity(const hf_case *c, const hf_requirement_settings *a,
            (!has_frequency || frequency_of(c, a) == frequency_of(c, b));
 }
 
+static bool is_of_all(const hf_requirement_settings *r)
+{
+    return r->figure == HF_REQUIRED_TENSION && (!*r->set || !strcmp(r->set, "all"));
+}
+
+/* Returns whether both rows bound the tension of the same cables, because one row is about all cables. */
+static bool shares_cables(const hf_requirement_settings *a, const hf_requirement_settings *b)
+{
+    return a->figure == b->figure && (is_of_all(a) || is_of_all(b));
+}
+
 /* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. */
 static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
 {
@@ -113,10 +124,11 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
              is_same_case = !strcmp(r->load_case, q->load_case),
              overlaps = is_same_case || !strcmp(r->load_case, "all") || !strcmp(q->load_case, "all");
         bounds_of(q, other);
-        if (!is_same_quantity(c, r, q) || !overlaps) continue;
-        if (is_same_case && is_same_share &&
+        bool is_same = is_same_quantity(c, r, q);
+        if (!overlaps || !(is_same || shares_cables(r, q))) continue;
+        if (is_same && is_same_case && is_same_share &&
             ((isfinite(mine[0]) && isfinite(other[0])) || (isfinite(mine[1]) && isfinite(other[1])))) {
-            snprintf(what, sizeof what, "is required by row %d already; keep one of the rows", k);
+            snprintf(what, sizeof what, "is bounded by row %d already; keep one of the rows", k);
             hf_config_fault_in_row(f, list, i, "figure", what);
         } else if (mine[0] > other[1] || mine[1] < other[0]) {
             snprintf(what, sizeof what, "contradicts row %d: no value meets both rows", k);

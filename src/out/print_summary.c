@@ -750,7 +750,7 @@ static void print_short(const hf_summary *s, const char *path, hf_print_style st
         print_stages(s, result, true, f);
     print_errors(s, result, true, f);
     print_worst_load_cases(s, f);
-    if (s->tolerance) hf_print_tolerance(s->tolerance, HF_PRINT_SHORT, f);
+    if (s->tolerance) hf_print_tolerance(s, HF_PRINT_SHORT, f);
     print_end(s, path, style, true, f);
 }
 
@@ -769,7 +769,7 @@ static void print_long(const hf_summary *s, const char *path, hf_print_style sty
     if (s->front) print_form_parts(s, result, f);
     if (result != HF_N_STAGE) print_pattern(s->stage[result].pattern, f);
     print_load_cases(s, f);
-    if (s->tolerance) hf_print_tolerance(s->tolerance, style.verbose ? HF_PRINT_VERBOSE : HF_PRINT_NORMAL, f);
+    if (s->tolerance) hf_print_tolerance(s, style.verbose ? HF_PRINT_VERBOSE : HF_PRINT_NORMAL, f);
     print_end(s, path, style, false, f);
 }
 

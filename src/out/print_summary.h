@@ -45,4 +45,4 @@ typedef enum { HF_PRINT_SHORT, HF_PRINT_NORMAL, HF_PRINT_VERBOSE } hf_print_amou
 
 /* Prints psi of the as-built net and the yield; the normal amount adds the cables with the largest shares, the verbose
  * one all measures and the control variate. */
-void hf_print_tolerance(const hf_tolerance_summary *tolerance, hf_print_amount amount, FILE *file);
+void hf_print_tolerance(const hf_summary *summary, hf_print_amount amount, FILE *file);

@@ -92,14 +92,15 @@ static void print_shares(const hf_tolerance_summary *t, FILE *f)
     if (*line) hf_print_line(f, "                cables that contribute most to the variance of psi: %s", line);
 }
 
-void hf_print_tolerance(const hf_tolerance_summary *t, hf_print_amount amount, FILE *f)
+void hf_print_tolerance(const hf_summary *s, hf_print_amount amount, FILE *f)
 {
+    const hf_tolerance_summary *t = s->tolerance;
     if (isinf(t->psi_95_m))
         fprintf(f, "  as built      fewer than 95 %% of %d samples have a shape; psi ", t->samples);
     else {
         fputs("  as built      psi at most ", f);
         print_mm(f, t->psi_95_m);
-        fprintf(f, " in 95 %% of %d samples, ", t->samples);
+        fprintf(f, " in 95 %% of %d samples%s, ", t->samples, s->n_load_case ? " of the nominal load case" : "");
     }
     print_mm(f, t->nominal_psi_m);
     fprintf(f, " without errors; %d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack,

@@ -153,7 +153,10 @@ export const pages = [
       "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
       "form: {method: auto}\ntolerance: {sigma_cut_m: 1e-4, samples: 500, find_scale: true}\nrequirements: [{figure: " +
       "psi, at_most: 0.0785, at_least: 0.001, share: 0.9}]\n",
-    sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "provenance"],
+    sections: [
+      ...["requirements", "net", "cables", "map", "tensions", "distributions", "tolerance", "summary", "form-finding"],
+      "provenance",
+    ],
     slack: 0,
   },
   {

@@ -61,7 +61,7 @@ START_TEST(faults_are_named)
          "6:61: requirements.0.feed: cannot be refocused for pointing"},
         {"  - {figure: gain_loss, at_most: 1}\n  - {figure: gain_loss, at_most: 2, frequency_Hz: 8e8}\n"
          "surface: {frequencies_Hz: [8e8]}\n",
-         "7:14: requirements.1.figure: is required by row 0 already; keep one of the rows"},
+         "7:14: requirements.1.figure: is bounded by row 0 already; keep one of the rows"},
         {"  - {figure: gain_loss, at_most: 1, frequency_Hz: 8e12}\nsurface: {}\n",
          "6:14: requirements.0.figure: hifdm cannot compute this figure at 8000 GHz, because its facets are too "
          "coarse"},
@@ -83,8 +83,10 @@ START_TEST(faults_are_named)
         {"  - {figure: tension, at_least: 1, share: 0}\n" SAMPLES,
          "6:43: requirements.0.share: must be above 0 and at most 1, not 0"},
         {"  - {figure: tension, at_least: 1}\n  - {figure: tension, at_least: 2}\n",
-         "7:14: requirements.1.figure: is required by row 0 already; keep one of the rows"},
+         "7:14: requirements.1.figure: is bounded by row 0 already; keep one of the rows"},
         {"  - {figure: tension, at_least: 5}\n  - {figure: tension, set: all, at_most: 2}\n",
+         "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},
+        {"  - {figure: tension, at_least: 5}\n  - {figure: tension, set: boundary, at_most: 2}\n",
          "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},
         {"  - {figure: psi, at_most: 1}\n  - {figure: psi, at_least: 2, load_case: all}\n" LOADED,
          "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},

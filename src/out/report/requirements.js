@@ -1,6 +1,6 @@
 // The verdicts on the rows of `requirements`, and the distribution functions of the figures of their samples.
 
-const VERDICT_RANK = { fail: 0, undecided: 1, pass: 2, none: 3 },
+const VERDICT_RANK = { fail: 0, undecided: 1, pass: 2 },
   TIGHTEST_SHOWN = 5, // rows shown besides those that are not passed, as in the summary
   DISTRIBUTIONS_SHOWN = 4;
 
@@ -49,9 +49,8 @@ function verdictText(rows) {
       [count("fail"), count("fail") === 1 ? "fails" : "fail"],
       [count("undecided"), count("undecided") === 1 ? "is undecided" : "are undecided"],
     ].filter(([n]) => n);
-  const judgedRows = rows.length - count("none");
   return (
-    `${fmtCount(count("pass"))} of ${fmtCount(judgedRows)} requirements pass` +
+    `${fmtCount(count("pass"))} of ${fmtCount(rows.length)} requirements pass` +
     `${more.map(([n, verb]) => `, ${fmtCount(n)} ${verb}`).join("")}.`
   );
 }
@@ -69,7 +68,7 @@ function verdictTable(rows, caption) {
       column("Requirement", (row) => row.name),
       column(
         "verdict",
-        (row) => el("strong", { class: `verdict ${row.verdict}` }, row.verdict === "none" ? "–" : row.verdict),
+        (row) => el("strong", { class: `verdict ${row.verdict}` }, row.verdict),
         { beside: true, of: (i) => VERDICT_RANK[rows[i].verdict] },
       ),
       amount("value", "value", (row) => withUnit(row.value, row.unit)),

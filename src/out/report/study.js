@@ -105,8 +105,11 @@ const lowered = (title) => title.replace(/^[A-Z]/, (c) => c.toLowerCase());
 // Returns the figures of a study with their stages.
 //   of: (i, stage) -> value at a finished point, or null
 //   drawn: the stages in which the figure varies by more than rounding
+// Losses by Ruze's formula are left out beside those by physical optics, which are for the feeds that they name.
 function readFigures(study, mainStage) {
-  const rows = study.figure.filter((row) => figureWords(row) && !row.psi);
+  const hasOptics = study.figure.some(({ key }) => /^refocused_gain_loss_at_/.test(key)),
+    isBehind = ({ key }) => hasOptics && /gain_loss/.test(key) && !/^(refocused|fixed)_gain/.test(key);
+  const rows = study.figure.filter((row) => figureWords(row) && !row.psi && !isBehind(row));
   return [...new Set(rows.map(({ key }) => key))]
     .map((key) => {
       const own = rows.filter((row) => row.key === key),
@@ -537,7 +540,7 @@ function figureColumn(study, f, stage) {
 }
 
 function writePoints(study, axes, figures, best) {
-  // The table has the gain loss by physical optics with the refocused feed. The charts have the other losses, too.
+  // The table has the gain loss with the refocused feed. The charts have that with the fixed feed, too.
   const hasOptics = figures.some((f) => /^refocused_gain_loss_at_/.test(f.key)),
     isRadio = (f) => /gain_loss_at_|ruze|pointing/.test(f.key),
     isInTable = (f) => !hasOptics || /^refocused_gain_loss_at_/.test(f.key) || !isRadio(f);
