@@ -151,12 +151,8 @@ export const pages = [
     text:
       "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  parabolic_cylinder: {aperture_m: 10, length_m: 12, " +
       "focal_length_m: 7.2, modules: [4, 5], cells_per_module: [2, 2], boundary: outer_edge, scallop: 0.1}\n" +
-      "form: {method: auto}\ntolerance: {sigma_cut_m: 1e-4, samples: 500, find_scale: true}\nrequirements: [{figure: " +
-      "psi, at_most: 0.0785, at_least: 0.001, share: 0.9}]\n",
-    sections: [
-      ...["requirements", "net", "cables", "map", "tensions", "distributions", "tolerance", "summary", "form-finding"],
-      "provenance",
-    ],
+      "form: {method: auto}\ntolerance: {sigma_cut_m: 1e-4, samples: 500}\n",
+    sections: ["net", "cables", "map", "tensions", "tolerance", "summary", "form-finding", "provenance"],
     slack: 0,
   },
   {

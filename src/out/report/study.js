@@ -543,7 +543,10 @@ function writePoints(study, axes, figures, best) {
   // The table has the gain loss with the refocused feed. The charts have that with the fixed feed, too.
   const hasOptics = figures.some((f) => /^refocused_gain_loss_at_/.test(f.key)),
     isRadio = (f) => /gain_loss_at_|ruze|pointing/.test(f.key),
-    isInTable = (f) => !hasOptics || /^refocused_gain_loss_at_/.test(f.key) || !isRadio(f);
+    isInTable = (f) => {
+      if (f.key === "yield" && study.tightest.length) return false; // the verdict says it
+      return !hasOptics || /^refocused_gain_loss_at_/.test(f.key) || !isRadio(f);
+    };
   const varying = axes.filter((a) => a.varies),
     fixed = axes.filter((a) => !a.varies),
     rows = Array.from({ length: study.n }, (_, i) => i);
