@@ -146,6 +146,15 @@ export const pages = [
     sections: ["front", "net", "cables", "map", "tensions", "summary", "form-finding", "provenance"],
   },
   {
+    name: "front-judged", // some points fail
+    text: cylinder(
+      [4, 5],
+      "optimize: {method: lm, front_points: 5, front: [{figure: psi}, {figure: ratio, set: boundary}]}\n" +
+        "requirements: [{figure: psi, at_most: 0.0779, search: off}]\n",
+    ),
+    sections: ["requirements", "front", "net", "cables", "map", "tensions", "summary", "form-finding", "provenance"],
+  },
+  {
     name: "tolerance",
     look: true,
     text:

@@ -389,6 +389,14 @@ export async function checkFront(browser, tab, made, folder) {
   await checkJudgedFront(browser, made, folder);
 }
 
+// The verdicts in the table are those of the file.
+export async function checkVerdictsOfFront(tab, made) {
+  const cells = await tab.locator('#front td[data-label="Verdict"]').allTextContents(),
+    expected = made.summary.front.points.map(({ verdict, requirements_failed: n }) => verdict + (n ? ` (${n})` : ""));
+  assert.deepEqual(cells, expected);
+  assert.ok(new Set(expected).size > 1, "all points have the same verdict");
+}
+
 // Many points, with verdicts: each has its mark, of the colour of its verdict. In a copy of the page with such points.
 async function checkJudgedFront(browser, made, folder) {
   const page = readFileSync(made.html, "utf8"),
@@ -399,8 +407,9 @@ async function checkJudgedFront(browser, made, folder) {
     ...first,
     id: k + 1,
     objective: Object.fromEntries(Object.keys(first.objective).map((key, j) => [key, j ? 3 - k / 40 : 0.01 + k / 1e4])),
-    n_failed: k < 30 ? 0 : 2,
-    n_undecided: k < 10 ? 1 : 0,
+    verdict: k < 10 ? "undecided" : k < 30 ? "pass" : "fail",
+    requirements_failed: k < 30 ? 0 : 2,
+    requirements_undecided: k < 10 ? 1 : 0,
   }));
   const copy = page.replace(DATA, (_, head, old, tail) => head + JSON.stringify(data) + tail);
   await openCopy(browser, folder, "judged", copy, async (tab) => {

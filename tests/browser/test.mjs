@@ -14,6 +14,7 @@ import { pages } from "./pages.mjs";
 import {
   checkAdjust,
   checkFront,
+  checkVerdictsOfFront,
   checkPattern,
   checkRequirements,
   checkRounding,
@@ -208,9 +209,10 @@ async function test(browser, page) {
     else await checkMap(tab, made);
     if (page.facets) await checkFacets(tab, page, made);
     if (page.name === "front") await checkFront(browser, tab, made, folder);
+    if (page.name === "front-judged") await checkVerdictsOfFront(tab, made);
     if (page.measured) await checkAdjust(tab, made, changes);
     if (page.pattern) await checkPattern(tab, page, made);
-    if (made.summary.requirements) await checkRequirements(tab, made);
+    if (made.summary.requirements && !made.summary.front) await checkRequirements(tab, made);
     else if (made.summary.tolerance && !page.measured) await checkTolerance(tab, made);
     await checkUnknownFigure(browser, made, folder);
   }

@@ -29,9 +29,8 @@ const pointValues = (objective) =>
     .map(([key, value]) => `${objectiveName(key)} ${objectiveText(key, objectiveScale(key) * value)}`)
     .join(", ");
 
-// Returns the verdict on a point by its counts of requirements, or "" if the file has none.
-const verdictOn = ({ n_failed: failed, n_undecided: open }) =>
-  typeof failed !== "number" ? "" : failed ? "fail" : open ? "undecided" : "pass";
+// Returns the verdict on a point, or "" if the file has none.
+const verdictOn = ({ verdict }) => verdict || "";
 const MARK = { on: "on the front", dominated: "dominated by another point", failed: "no feasible design" };
 
 // Returns the table of the points, with the change of the minimised objective per unit of each other one.
@@ -46,7 +45,7 @@ function frontTable(front, names) {
   });
   const position = (i) => (i === front.knee ? "knee" : MARK[points[i].mark] || points[i].mark),
     verdict = (i) => {
-      const { n_failed: failed, n_undecided: open } = points[i],
+      const { requirements_failed: failed, requirements_undecided: open } = points[i],
         n = failed || open;
       return verdictOn(points[i]) + (n ? ` (${fmtCount(n)})` : "") || "–";
     };
