@@ -22,16 +22,15 @@ static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 
 static hf_status judge_strictly(const hf_summary *s, hf_messages *messages)
 {
-    int n = 0;
+    hf_judgement of = hf_requirements_judge(s->n_requirement, s->requirement);
     if (!s->finished) return HF_OK; /* a task of several */
     if (s->n_requirement == 0)
         return hf_error(messages, HF_BAD_USAGE,
                         "--strict checks requirements, but the case has none: add the list "
                         "`requirements`, or remove the option");
-    for (int i = 0; i < s->n_requirement; i++)
-        n += s->requirement[i].verdict == HF_VERDICT_FAIL;
-    if (n == 0) return HF_OK;
-    return hf_error(messages, HF_REQUIREMENT_FAILED, "the result fails %d of %d requirements", n, s->n_requirement);
+    if (of.n_failed == 0) return HF_OK;
+    return hf_error(messages, HF_REQUIREMENT_FAILED, "the result fails %d of %d requirements", of.n_failed,
+                    s->n_requirement);
 }
 
 static hf_status check_more(const hf_options *o, hf_messages *messages)

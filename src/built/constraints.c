@@ -321,12 +321,12 @@ static double psi_rate(const hf_model *m, const hf_workspace *w, const double *m
 }
 
 /* Returns the rate of the force of the net on a support. */
-static double support_rate(const hf_model *m, const hf_workspace *w, int row, const hf_objectives_rate *by)
+static double support_rate(const hf_required *q, const hf_model *m, const hf_workspace *w, int node,
+                           const hf_objectives_rate *by)
 {
     double force[3] = {0}, force_rate[3] = {0}, u[3], pull_rate[3];
-    for (int e = 0; e < m->n_cable; e++) {
-        int sign = m->end_row[2 * e] == row ? 1 : -1;
-        if (m->end_row[2 * e] != row && m->end_row[2 * e + 1] != row) continue;
+    for (int k = q->support_start[node]; k < q->support_start[node + 1]; k++) {
+        int e = q->support_cable[k], sign = m->end_row[2 * e] == m->row_of_node[node] ? 1 : -1;
         hf_newton_matrix_direction(m, w->position_m, e, u);
         hf_newton_matrix_pull_rate(m, w->position_m, e, w->tension_N[e], by->tension_N[e], by->position_m, pull_rate);
         for (int c = 0; c < 3; c++) {
@@ -410,7 +410,7 @@ static double figure_rate(constraints_room *r, int column, double item, const hf
                 return hf_norm_rate(w->displacement_m + 3 * (size_t)k, by->displacement_m + 3 * (size_t)k);
         return 0;
     case HF_REQUIRED_PULL:
-        return support_rate(m, w, m->row_of_node[(int)item], by);
+        return support_rate(r->c->required, m, w, (int)item, by);
     case HF_REQUIRED_MASS:
         return mass_rate(r->c->required, c, m, w, by);
     case HF_REQUIRED_LOOSE:

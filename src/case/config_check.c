@@ -89,6 +89,14 @@ const char *hf_config_frequency_fault(double frequency_Hz, char what[HF_CONFIG_W
     return what;
 }
 
+double hf_config_highest_Hz(const hf_case *c)
+{
+    double highest_Hz = (double)NAN;
+    for (int k = 0; k < c->surface.frequencies_Hz.n; k++)
+        highest_Hz = fmax(highest_Hz, c->surface.frequencies_Hz.value[k]); /* fmax ignores NaN */
+    return highest_Hz;
+}
+
 static void check_frequencies(const hf_double_list *frequency_Hz, hf_config_faults *f)
 {
     char what[HF_CONFIG_WHAT_SIZE];

@@ -17,6 +17,9 @@ enum { HF_CONFIG_WHAT_SIZE = 512 };
 /* Returns the fault of a frequency that is probably in GHz, for the end of a message, or NULL. */
 const char *hf_config_frequency_fault(double frequency_Hz, char what[HF_CONFIG_WHAT_SIZE]);
 
+/* Returns the highest of surface.frequencies_Hz, NaN without one. */
+double hf_config_highest_Hz(const hf_case *settings);
+
 /* Reports a key in a row of a kind that does not use it. `users` has one bit for each kind that uses it. */
 void hf_config_check_use(hf_config_faults *faults, const char *list, int row, const char *key, int kind,
                          const char *const *kind_word, unsigned users);

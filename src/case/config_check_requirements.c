@@ -84,11 +84,7 @@ static void check_share(const hf_case *c, int i, const hf_requirement_settings *
 /* Returns the frequency of a row; NaN: it has none. The default is the highest frequency of the surface. */
 static double frequency_of(const hf_case *c, const hf_requirement_settings *r)
 {
-    const hf_double_list *list_Hz = &c->surface.frequencies_Hz;
-    double highest_Hz = r->frequency_Hz;
-    for (int k = 0; k < list_Hz->n && isnan(r->frequency_Hz); k++)
-        highest_Hz = fmax(highest_Hz, list_Hz->value[k]);
-    return highest_Hz;
+    return isnan(r->frequency_Hz) ? hf_config_highest_Hz(c) : r->frequency_Hz;
 }
 
 /* Returns whether two rows bound the same figure of the same cables. An empty set stands for all cables. */

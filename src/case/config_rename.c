@@ -1,6 +1,7 @@
 #include "case/config_rename.h"
 
 #include "base/elementary.h"
+#include "case/config_check.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -103,11 +104,8 @@ static const struct {
 /* Returns the RMS half-path error from which a gain loss follows by Ruze's formula at the highest frequency. */
 static double rms_of_loss(const hf_case *c, double loss_dB)
 {
-    double highest_Hz = 0;
-    for (int k = 0; k < c->surface.frequencies_Hz.n; k++)
-        highest_Hz = fmax(highest_Hz, c->surface.frequencies_Hz.value[k]);
     if (isnan(loss_dB)) return loss_dB;
-    return HF_LIGHT_M_PER_S / (4 * HF_PI * highest_Hz) * sqrt(fmin(loss_dB, RUZE_MOST_DB) / HF_DB_PER_LN);
+    return HF_LIGHT_M_PER_S / (4 * HF_PI * hf_config_highest_Hz(c)) * sqrt(fmin(loss_dB, RUZE_MOST_DB) / HF_DB_PER_LN);
 }
 
 /* Copies the location of a key of an old row to that of the new one. */

@@ -7,6 +7,7 @@
  * pass. */
 #include "out/merged.h"
 
+#include "base/elementary.h"
 #include "base/path.h"
 #include "store/ledger.h"
 
@@ -298,25 +299,18 @@ static int tightest_of(const hf_merged *m, int i)
     return -1;
 }
 
-/* Returns the judgement without its margin, which ranks points as one of the figures, because of rounding. */
-static hf_judgement counts_of(const hf_merged_judgement *j)
-{
-    return (hf_judgement){j->n_required, j->n_failed, j->n_undecided, (double)NAN};
-}
-
 static hf_merged_judgement judge(const hf_merged *m, int i)
 {
-    hf_merged_judgement j = {.verdict = HF_VERDICT_NONE, .tightest = -1};
-    int count[HF_VERDICT_N] = {0};
+    hf_merged_judgement j = {.verdict = HF_VERDICT_NONE, .of.relative_margin_min = (double)NAN, .tightest = -1};
     if (!hf_merged_is_done(m, i)) return j;
-    for (int row = 0; row < m->n_row; row++)
-        count[verdict_of(m, i, row)]++;
-    j.n_failed = count[HF_VERDICT_FAIL];
-    j.n_undecided = count[HF_VERDICT_UNDECIDED];
-    j.n_required = count[HF_VERDICT_PASS] + j.n_failed + j.n_undecided;
-    if (j.n_required == 0) return j;
-    hf_judgement counts = counts_of(&j);
-    j.verdict = hf_judgement_verdict(&counts);
+    for (int row = 0; row < m->n_row; row++) {
+        hf_verdict verdict = verdict_of(m, i, row);
+        j.of.n_required += verdict != HF_VERDICT_NONE;
+        j.of.n_failed += verdict == HF_VERDICT_FAIL;
+        j.of.n_undecided += verdict == HF_VERDICT_UNDECIDED;
+    }
+    if (j.of.n_required == 0) return j;
+    j.verdict = hf_judgement_verdict(&j.of);
     j.tightest = tightest_of(m, i);
     return j;
 }
@@ -331,8 +325,7 @@ bool hf_merged_is_judged(const hf_merged *m)
 /* Compares two points by their verdicts, as hf_judgement_compare does. */
 static int compare_verdicts(const hf_merged *m, int i, int j)
 {
-    hf_judgement a = counts_of(&m->judgement[i]), b = counts_of(&m->judgement[j]);
-    return hf_judgement_compare(&a, &b);
+    return hf_judgement_compare(&m->judgement[i].of, &m->judgement[j].of);
 }
 
 bool hf_merged_is_margin(const hf_merged *m, int figure)
@@ -494,8 +487,7 @@ typedef struct {
 
 static int by_value(const void *a, const void *b)
 {
-    double p = ((const tried *)a)->value, q = ((const tried *)b)->value;
-    return (p > q) - (p < q);
+    return hf_compare_doubles(&((const tried *)a)->value, &((const tried *)b)->value);
 }
 
 int hf_merged_passing(const hf_merged *m, int axis, hf_merged_interval *interval, int most)

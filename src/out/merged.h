@@ -32,9 +32,9 @@ typedef struct {
 /* What a point has to meet: the rows of `requirements` with a verdict. Points rank by the
  * number of requirements that fail, then by the number of undecided ones, then by the smallest relative margin. */
 typedef struct {
-    hf_verdict verdict;                    /* HF_VERDICT_NONE: nothing is required, or the point is not done */
-    int n_required, n_failed, n_undecided; /* numbers of requirements */
-    int tightest; /* row that decides: the first of those that fail, else of the undecided ones,
+    hf_verdict verdict; /* HF_VERDICT_NONE: nothing is required, or the point is not done */
+    hf_judgement of;    /* without its margin, which ranks points as one of the figures, because of rounding */
+    int tightest;       /* row that decides: the first of those that fail, else of the undecided ones,
                                             else of all, by relative margin; -1: none */
 } hf_merged_judgement;
 

@@ -265,13 +265,13 @@ static void print_figure(const hf_merged *m, const column *c, int i, char text[C
 const char *hf_print_study_verdict(const hf_merged *m, int i, char text[HF_AXIS_NAME_SIZE])
 {
     const hf_merged_judgement *j = &m->judgement[i];
-    int n = j->verdict == HF_VERDICT_FAIL ? j->n_failed : j->n_undecided;
+    int n = j->verdict == HF_VERDICT_FAIL ? j->of.n_failed : j->of.n_undecided;
     if (j->verdict == HF_VERDICT_NONE)
         strcpy(text, "-");
     else if (j->verdict == HF_VERDICT_PASS)
         strcpy(text, hf_verdict_word[j->verdict]);
     else
-        snprintf(text, HF_AXIS_NAME_SIZE, "%s (%d of %d)", hf_verdict_word[j->verdict], n, j->n_required);
+        snprintf(text, HF_AXIS_NAME_SIZE, "%s (%d of %d)", hf_verdict_word[j->verdict], n, j->of.n_required);
     return text;
 }
 
@@ -281,8 +281,10 @@ static void print_margin(const hf_merged *m, int row, int i, char text[CELL_SIZE
     size_t at = (size_t)i * (size_t)m->n_row + (size_t)row;
     double relative = m->row_relative_margin.value[at];
     const char *name = hf_texts_at(&m->row_name, row), *unit = "";
+    size_t n = strcspn(name, " ,"); /* the name begins with the figure */
     for (int k = 0; k < HF_REQUIRED_N_FIGURE; k++)
-        if (!strncmp(name, hf_required_figure_word[k], strcspn(name, " ,"))) unit = hf_required_figure_unit[k];
+        if (strlen(hf_required_figure_word[k]) == n && !strncmp(name, hf_required_figure_word[k], n))
+            unit = hf_required_figure_unit[k];
     double scale = hf_print_scale(unit, &unit);
     if (isfinite(relative))
         snprintf(text, CELL_SIZE, "%+.1f %%", 100 * relative);
@@ -512,10 +514,10 @@ static void add_verdict(const hf_merged *m, items *line)
     if (j->verdict == HF_VERDICT_PASS)
         snprintf(text, sizeof text, "passes");
     else if (j->verdict == HF_VERDICT_FAIL)
-        snprintf(text, sizeof text, "no point passes; the best fails %d of %d", j->n_failed, j->n_required);
+        snprintf(text, sizeof text, "no point passes; the best fails %d of %d", j->of.n_failed, j->of.n_required);
     else
-        snprintf(text, sizeof text, "no point passes; of the best %d of %d %s undecided", j->n_undecided, j->n_required,
-                 j->n_undecided == 1 ? "is" : "are");
+        snprintf(text, sizeof text, "no point passes; of the best %d of %d %s undecided", j->of.n_undecided,
+                 j->of.n_required, j->of.n_undecided == 1 ? "is" : "are");
     add_item(line, text);
 }
 

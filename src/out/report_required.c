@@ -1,6 +1,7 @@
 /* Implements report_required.h. */
 #include "out/report_required.h"
 
+#include "base/elementary.h"
 #include "built/required.h"
 #include "store/store_open.h"
 #include "store/store_read.h"
@@ -13,19 +14,13 @@
 
 #define VALUES_MAX 400 /* values of a curve on the page, about what a screen can show */
 
-static int compare_values(const void *a, const void *b)
-{
-    double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 /* Sorts the samples, and keeps evenly spaced ones, the first and the last among them. */
 static hf_status keep_values(const hf_series *samples, hf_report_curve *to)
 {
     int n = 0;
     for (int i = 0; i < samples->n; i++) /* a sample without a shape has no value */
         if (isfinite(samples->value[i])) samples->value[n++] = samples->value[i];
-    qsort(samples->value, (size_t)n, sizeof(double), compare_values);
+    qsort(samples->value, (size_t)n, sizeof(double), hf_compare_doubles);
     to->n = samples->n;
     to->n_value = n < VALUES_MAX ? n : VALUES_MAX;
     to->value = calloc(2 * (size_t)to->n_value + 1, sizeof(double));

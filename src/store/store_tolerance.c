@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #define BLOCK 4096 /* samples that are read and written at a time */
 
