@@ -37,9 +37,8 @@ typedef struct {
 /* Defines sample i. On entry, the arrays cut_m [n_cable] and EA_N [n_cable] contain the nominal values, and the array
  * support_displacement_m [3][n_node] contains zeros. The array load_N [3][n_node] contains the loads of the nominal
  * net. The callback changes the arrays to the values of sample i. The struct hf_built_net describes the arrays. The
- * arrays of quantities that do not vary are NULL. Several threads may call the callback at the
- * same time. The callback may be called more than once for the same sample. The values that the callback writes must
- * depend on i alone. */
+ * arrays of quantities that do not vary are NULL. Several threads may call the callback at the same time. The callback
+ * may be called more than once for the same sample. The values that the callback writes must depend on i alone. */
 typedef void hf_built_sample(void *context, long i, double *cut_m, double *EA_N, double *support_displacement_m,
                              double *load_N);
 

@@ -203,8 +203,8 @@ hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *q, co
 }
 
 /* Warns about a length, force or mass that is far off all bounds of its row. Such a bound is probably in mm, kN or g.
- * The factor allows that the value is five times off the bound that was meant: with a bound in mm, a value that fails
- * by 8 % is less than a thousand times off. A bound of 0 has no unit to be wrong in. */
+ * The factor allows that the value is five times off the bound in the right unit: with a bound in mm, a value that
+ * fails by 8 % is less than a thousand times off. A bound of 0 has no unit to be wrong in. */
 #define OTHER_UNIT 200.0
 static void doubt_bounds(const hf_requirement_verdict *v, int i, hf_messages *messages)
 {

@@ -119,15 +119,15 @@ START_TEST(a_heavy_twin_needs_its_load_case)
     HIFDM(0, "adjust", file_with("case.yaml", HEAVY), "--measured", temp("m.csv"), "--json", "--load-case", "workshop");
     const char *nominal = strstr(said.out, "\"nominal\", ");
     ck_assert_ptr_nonnull(nominal);
-    double told = strtod(strstr(nominal, "\"adjusted_m\": ") + 14, NULL);
+    double predicted = strtod(strstr(nominal, "\"adjusted_m\": ") + 14, NULL);
     TWIN("built", cut, design, temp("true.csv"), nodes, "2e-4", seed);
     double after = turned_m(temp("moves.csv"), design, "");
     printf("twin %d: errors missed by %.4f mm without weight, %.4f under weight, %.4f without its load case; psi %.4f "
-           "mm after the moves, told %.4f\n",
-           _i, by_light * 1e3, with * 1e3, without * 1e3, after * 1e3, told * 1e3);
+           "mm after the moves, predicted %.4f\n",
+           _i, by_light * 1e3, with * 1e3, without * 1e3, after * 1e3, predicted * 1e3);
     ck_assert_double_lt(with, 1.05 * by_light);
     ck_assert_double_gt(without, 1.3 * by_light);
-    ck_assert_double_lt(fabs(after - told), 0.05 * told);
+    ck_assert_double_lt(fabs(after - predicted), 0.05 * predicted);
 }
 END_TEST
 

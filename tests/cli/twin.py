@@ -58,8 +58,8 @@ def weighed(cut, nodes, kg_per_m, path):
 def missed(answer, cut, cables):
     with open(answer) as file:
         found = json.load(file)["errors_m"]
-    meant = {c["id"]: float(c["unstressed_length_m"]) for c in read(cut)}
-    square = [(found[c["id"]] - (float(c["value"]) - meant[c["id"]]))**2 for c in read(cables)]
+    designed = {c["id"]: float(c["unstressed_length_m"]) for c in read(cut)}
+    square = [(found[c["id"]] - (float(c["value"]) - designed[c["id"]]))**2 for c in read(cables)]
     print(repr(math.sqrt(sum(square) / len(square))))
 
 

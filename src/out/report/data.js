@@ -139,7 +139,7 @@ const resultIn = (figures, shapes) => {
 };
 // The result for comparison. Its shape is shown with the others when it has the same net.
 const { other } = data;
-// With two results, both are named by their files, with as many folders as tell them apart.
+// With two results, both are named by their files, with as many folders as distinguish them.
 function fileNames(paths) {
   const parts = paths.map((path) => path.split("/")),
     most = Math.max(...parts.map(({ length }) => length));

@@ -35,7 +35,7 @@ function worstOf(row) {
   return parts.filter((part) => part).join(", ") || "–";
 }
 
-// Returns the rows as in the summary: failed, undecided, passed, without a verdict; in each the tightest first.
+// Returns the rows as in the summary: failed, undecided, passed; in each the tightest first.
 function judged(of = summary, required = data.required) {
   const tightness = (row) => (hasNumber(row.relative_margin) ? row.relative_margin : Infinity);
   return (of.requirements || [])

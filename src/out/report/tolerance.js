@@ -12,23 +12,17 @@ const ERROR_KIND = {
 };
 const percent = (part, digits = 3) => `${fmt(100 * part, digits)}\u00a0%`;
 
-// Returns marks for figures of the samples and for limits of psi that the case requires. A mark is only named when its
-// distance from the samples exceeds REACH times their range, because it would compress the histogram.
+// Returns marks for figures of the samples. A mark is only named when its distance from the samples exceeds REACH times
+// their range, because it would compress the histogram.
 function toleranceMarks(t, [low, high]) {
   const reach = REACH * (high - low);
   const all = [
     { name: "without errors", at: t.nominal_psi_m, colour: "--three", dash: "2 3" },
     { name: "95 % of the samples are below", at: t.psi_95_m, colour: "--two" },
-    ...(summary.requirements || [])
-      .filter(({ figure, load_case: of, share }) => figure === "psi" && share && (of === "nominal" || of === "all"))
-      .flatMap((row) => [
-        { name: "required maximum", at: row.at_most, say: fmt, colour: "--four", dash: "7 3" },
-        { name: "required minimum", at: row.at_least, say: fmt, colour: "--four", dash: "7 3" },
-      ]),
   ].filter(({ at }) => typeof at === "number" && Number.isFinite(at));
   return all.map((mark) => {
     const isFar = mark.at < low - reach || mark.at > high + reach;
-    const name = `${mark.name} ${(mark.say || rounded)(1e3 * mark.at, 5)} mm${isFar ? ", outside of the picture" : ""}`;
+    const name = `${mark.name} ${rounded(1e3 * mark.at, 5)} mm${isFar ? ", outside of the picture" : ""}`;
     return { ...mark, name, at: 1e3 * mark.at, isFar };
   });
 }
