@@ -43,6 +43,9 @@ typedef struct {
      * is the merit, the member `merit` is NaN. The member best_psi_m also belongs to the best design. */
     int step, max_steps, first_step;
     double merit;
+    /* During the refinement, while no design within the limits and requirements is known: how far the nearest design is
+     * outside, as a sum of distances relative to the bounds. Otherwise 0. */
+    double violation;
     /* During the refinement of a Pareto front, points and points_all are the numbers of finished points and of all
      * points. The member `steps` is the number of steps of the searches for all points. In all other phases, points,
      * points_all and steps are 0. */

@@ -57,8 +57,12 @@ static void show_generation(FILE *f, const hf_run_progress *now)
 
 static void show_step(FILE *f, const hf_run_progress *now)
 {
-    fprintf(f, "Levenberg-Marquardt: step %d/%d  psi %.4f mm", now->step, now->max_steps, now->best_psi_m * 1e3);
-    if (isfinite(now->merit)) fprintf(f, ", merit %.6g", now->merit);
+    fprintf(f, "Levenberg-Marquardt: step %d/%d  ", now->step, now->max_steps);
+    if (now->violation > 0)
+        fprintf(f, "outside the limits and requirements by %.3g (sum of relative distances)", now->violation);
+    else
+        fprintf(f, "psi %.4f mm", now->best_psi_m * 1e3);
+    if (isfinite(now->merit) && now->violation == 0) fprintf(f, ", merit %.6g", now->merit);
     if (now->step > now->first_step) fprintf(f, "  at most %s left", hf_print_duration(left_s(now)).text);
 }
 
@@ -102,6 +106,7 @@ static void show_json(FILE *f, const hf_run_progress *now)
         hf_json_number(&j, "best_psi_m", now->best_psi_m);
     }
     if (steps && isfinite(now->merit)) hf_json_number(&j, "merit", now->merit);
+    if (now->violation > 0) hf_json_number(&j, "violation", now->violation);
     if (generations) hf_json_number(&j, "evaluations_per_s", rate_per_s(now));
     if (samples || front || steps || generations) hf_json_number(&j, "elapsed_s", now->elapsed_s);
     if (steps || generations) hf_json_number(&j, "at_most_left_s", left_s(now));

@@ -13,9 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Distance from the bound, in its unit, of a net without a shape or without the figure. */
-#define NO_SHAPE 1e3
-
 /* One constraint at one net. */
 typedef struct {
     int k, column;
@@ -184,7 +181,7 @@ static double beyond(constraints_room *r, int i_row, bool is_high, const hf_work
         return is_high ? slack_N - taut_N(&q->column[column], w, (int)row->at_most, item) : (double)NAN;
     double value = figure_of(r, column, w, item);
     double distance = is_high ? value - row->at_most : row->at_least - value;
-    return isfinite(distance) ? distance : NO_SHAPE * fmax(1, fabs(is_high ? row->at_most : row->at_least));
+    return isfinite(distance) ? distance : (double)INFINITY;
 }
 
 /* Returns the distance of constraint k for a net, over both bounds of its row if it is about samples. */
@@ -192,7 +189,7 @@ static double distance_of(constraints_room *r, int k, const hf_workspace *w, boo
 {
     const hf_built_constraints *c = r->c;
     double most = -INFINITY, at;
-    if (!w) return NO_SHAPE * c->unit[k];
+    if (!w) return HF_BUILT_NO_VALUE * c->unit[k];
     for (int high = 0; high < 2; high++) {
         if (!is_over_samples(c, k) && c->is_high[k] != high) continue;
         double distance = beyond(r, c->row[k], high, w, &at);
@@ -201,7 +198,7 @@ static double distance_of(constraints_room *r, int k, const hf_workspace *w, boo
         *is_high = high;
         *item = at;
     }
-    return most;
+    return isfinite(most) ? most : HF_BUILT_NO_VALUE * c->unit[k];
 }
 
 /* ---- measuring a design ---- */

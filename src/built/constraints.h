@@ -13,6 +13,9 @@
 #include "built/required.h"
 #include "surface/cloud.h"
 
+/* Distance from its bound, in units of the constraint, of a net without a shape or without the figure. */
+#define HF_BUILT_NO_VALUE 1e3
+
 typedef struct {
     hf_constraints as; /* the first member: the interface that evaluate.h uses */
     const hf_required *required;

@@ -373,6 +373,33 @@ void hf_problem_warn_of_front(const hf_problem *p, hf_messages *messages)
                c->has_tolerance ? "samples" : "", c->path);
 }
 
+/* Warns if values after form-finding are outside the bounds of their row, because the search then starts at another
+ * shape. */
+static void warn_of_bounds(const hf_problem *p, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    char where[HF_LOCATION_SIZE];
+    for (int i = 0; i < o->n_variable_row; i++) {
+        const hf_variable_settings *row = &o->variable_row[i];
+        double low = INFINITY, high = -INFINITY;
+        int n = 0, n_outside = 0, last = 0;
+        for (int k = 0; k < p->model.n_variable; k++) {
+            if (p->model.variable[k].setting != i) continue;
+            n++;
+            n_outside += p->initial[k] < row->lower || p->initial[k] > row->upper;
+            low = fmin(low, p->initial[k]);
+            high = fmax(high, p->initial[k]);
+            last = k;
+        }
+        if (n_outside == 0) continue;
+        hf_config_place(&p->settings, where, "optimize.variables.%d.bounds", i);
+        hf_warning(messages,
+                   "%s: the search starts at another shape, because %d of %d values after form-finding are outside "
+                   "these bounds. The values are between %.4g and %.4g %s; widen the bounds to include them",
+                   where, n_outside, n, low, high, hf_model_variable_unit(&p->model, last));
+    }
+}
+
 hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
 {
     const hf_model *m = &p->model;
@@ -385,6 +412,7 @@ hf_status hf_problem_base(hf_problem *p, hf_messages *messages)
     bool optimizes = p->settings.has_optimize && m->n_variable > 0;
     for (int k = 0; k < m->n_variable && optimizes; k++)
         HF_TRY(check_variable(p, k, messages));
+    if (optimizes && m->variable) warn_of_bounds(p, messages);
     if (optimizes && !hf_optimiser_plan_of(&p->settings.optimize).kind && !hf_refine_applies(&p->evaluator))
         return hf_error(messages, HF_BAD_CASE, HF_PROBLEM_REFINE_NEEDS, hf_problem_no_slopes(p));
     hf_symmetry_average(m, p->initial);

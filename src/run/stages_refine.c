@@ -89,6 +89,7 @@ static void tell_step(const steps *q)
                                                                .evaluations = now->evaluations - q->n_evaluation,
                                                                .best_psi_m = now->psi_m,
                                                                .merit = has_merit(q) ? now->merit : (double)NAN,
+                                                               .violation = now->violation,
                                                                .elapsed_s = hf_clock_s() - q->begin_s});
 }
 
@@ -140,6 +141,10 @@ static void note_stop(const steps *q, char stopped_at[HF_STOPPED_AT_SIZE])
 {
     int n = snprintf(stopped_at, HF_STOPPED_AT_SIZE, " after %d steps of the refinement", q->now.iterations);
     if (q->now.iterations == 0) return;
+    if (q->now.violation > 0) {
+        snprintf(stopped_at + n, HF_STOPPED_AT_SIZE - (size_t)n, ", outside the limits or requirements");
+        return;
+    }
     n += snprintf(stopped_at + n, HF_STOPPED_AT_SIZE - (size_t)n, ", at psi %.4f mm", q->now.psi_m * 1e3);
     if (has_merit(q) && isfinite(q->now.merit))
         snprintf(stopped_at + n, HF_STOPPED_AT_SIZE - (size_t)n, " and a merit of %.6g", q->now.merit);

@@ -13,6 +13,7 @@
 #include "search/refine.h"
 
 #include "linalg/dot.h"
+#include "net/symmetry.h"
 #include "search/refine_problem.h"
 #include "solve/limits.h"
 
@@ -36,6 +37,10 @@
  * only on the long way along a curved limit. */
 #define WAY_STEPS 25
 #define WAY_GAIN 0.01
+/* Factors of the pretension that a start outside the requirements tries before the first step: powers of SCALE_BY. */
+#define SCALE_BY 1.25
+#define SCALES_MAX 12
+#define SCALE_WORSE 2 /* a factor that leads this much farther away is the last one in its direction */
 /* A tension within this relative distance of its bound counts as being at it. This is twice the distance that a step
  * keeps (LIMIT_INSIDE of watch.c). */
 #define LIMIT_INSIDE 2e-9
@@ -256,6 +261,7 @@ static hf_status tell_watcher(hf_refine_problem *p, const hf_refine_result *r, i
                                     .is_last = r->stop != HF_REFINE_MAX_ITERATIONS || r->iterations == max_iterations,
                                     .merit = r->merit,
                                     .psi_m = p->best_psi_m,
+                                    .violation = p->is_outside ? p->violation : 0,
                                     .n_state = p->front ? 0 : p->n_state,
                                     .state = p->front ? NULL : p->state};
     return p->told = watcher->after(watcher->context, &now);
@@ -271,6 +277,63 @@ static void count_way(hf_refine_problem *p)
     p->settled_merit = p->is_outside ? p->violation : (double)INFINITY;
 }
 
+/* Sets `trial` to the start with all force densities and tensions multiplied by a factor, within the bounds. Returns
+ * false if that changes nothing. Variables that change by the same step take the mean of their steps. */
+static bool scale_start(hf_refine_problem *p, double factor)
+{
+    const hf_model *m = p->v.model;
+    bool changes = false;
+    memset(p->trial, 0, (size_t)p->n * sizeof(double));
+    memset(p->pull, 0, (size_t)p->n * sizeof(double)); /* the number of variables of each class */
+    for (int k = 0; k < m->n_variable; k++) {
+        hf_variable_sets sets = hf_evaluate_sets(p->caller, k);
+        int i = p->slopes.class_of_variable[k];
+        p->pull[i]++;
+        if (sets == HF_SETS_DENSITY || sets == HF_SETS_TENSION)
+            p->trial[i] += (factor - 1) * p->start[k] / hf_symmetry_weight(m, p->v.initial, k);
+    }
+    for (int i = 0; i < p->n; i++) {
+        p->trial[i] = fmax(p->low[i], fmin(p->high[i], p->trial[i] / p->pull[i]));
+        changes |= fabs(p->trial[i] - p->at[i]) > LIMIT_ROUNDING * p->unit[i];
+    }
+    return changes;
+}
+
+/* Returns how far the shape in the workspace is outside the limits or, below zero, its smallest relative margin. */
+static double distance_outside(hf_refine_problem *p)
+{
+    const hf_constraints *c = p->v.objectives->constraints;
+    double margin = -INFINITY;
+    if (!hf_watch_keeps(&p->watch, p->w)) return hf_watch_violation(&p->watch, p->w);
+    for (int k = 0; k < c->n; k++)
+        margin = fmax(margin, p->watch.constraint[k] / c->unit[k]);
+    return margin;
+}
+
+/* Multiplies the pretension of a start that breaks a requirement by the factor that leads farthest into all of them, or
+ * nearest. A slack cable has no derivative that leads out, but a higher pretension does. Counts as one iteration.
+ * Returns HF_OK or the status of the failure. */
+static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
+{
+    double nearest = p->violation;
+    r->iterations++;
+    for (int sign = 1; sign >= -1 && nearest == p->violation; sign -= 2)
+        for (int i = 1; i <= SCALES_MAX && scale_start(p, pow(SCALE_BY, sign * i)); i++) {
+            hf_status status = hf_refine_evaluate(p, p->trial);
+            if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
+            double distance = status == HF_OK ? distance_outside(p) : (double)INFINITY;
+            if (distance > (nearest > 0 ? SCALE_WORSE * nearest : nearest)) break;
+            if (!(distance < nearest)) continue;
+            nearest = distance;
+            hf_refine_keep(p);
+        }
+    p->is_outside = nearest >= 0;
+    p->violation = fmax(0, nearest);
+    HF_TRY(hf_refine_evaluate(p, p->at));
+    r->merit = hf_refine_merit(p, &p->result);
+    return hf_refine_linearise(p);
+}
+
 /* Moves a start from outside into the limits. Each step aims at a part (`way`) of the way to the linear limits. Limits
  * are not linear: if the step does not come nearer to them, the next one takes half of that part, otherwise twice. Near
  * a curved limit, the part of a step that lowers the merit leads away from the limit. If small parts of the way do not
@@ -280,6 +343,10 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
 {
     double gain;
     hf_watch_forget(&p->watch);
+    if (r->iterations == 0 && max_iterations > 0 && !p->front && hf_refine_n_constraint(p) > 0) {
+        HF_TRY(scale_into(p, r));
+        HF_TRY(tell_watcher(p, r, max_iterations));
+    }
     while (p->is_outside && (p->way > WAY_LEAST || p->damping < DAMPING_OF_WAY) &&
            (p->front || p->settled_steps < WAY_STEPS) && r->iterations < max_iterations) {
         if (p->way <= WAY_LEAST) {
@@ -416,6 +483,11 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
     if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
     while (status == HF_OK && !p->is_outside && r->stop == HF_REFINE_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
+        if (!p->front && r->merit <= p->noise) { /* a step would only follow the rounding */
+            r->stop = HF_REFINE_CONVERGED;
+            HF_TRY(tell_watcher(p, r, max_iterations));
+            break;
+        }
         r->iterations++;
         status = try_step(p, p->damping, &gain);
         if (status == HF_OK && !p->front) status = bend_step(p, before, gain);

@@ -35,6 +35,7 @@ typedef struct {
     int iterations, max_iterations, evaluations;
     bool is_last;
     double merit, psi_m; /* values of the best design so far, or of the nearest one while none is feasible */
+    double violation;    /* of the nearest design while none is feasible, as hf_watch_violation; otherwise 0 */
     size_t n_state;
     const double *state; /* [n_state], to resume the run with the same bits; NULL for a point of a front */
 } hf_refine_progress;

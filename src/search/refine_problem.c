@@ -5,17 +5,20 @@
  * Contents: the problem - evaluation - stored state */
 #include "search/refine_problem.h"
 
+#include "base/elementary.h"
 #include "linalg/band.h"
 #include "linalg/dot.h"
 #include "net/symmetry.h"
 #include "search/parallel.h"
 
+#include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
 
 /* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
-#define GRAM_ROWS 32      /* rows of J'J that a thread computes at a time; the bits do not depend on it */
+#define GRAM_ROWS 32 /* rows of J'J that a thread computes at a time; the bits do not depend on it */
+#define POSITION_ROUNDING (16 * DBL_EPSILON) /* error of a computed position, relative to the largest coordinate */
 #define DENSITY_LEFT 1e-3 /* minimum of a force density, as a part of its first value [1e-6 to 0.3] */
 
 /* ---- the problem ---- */
@@ -164,15 +167,21 @@ void hf_refine_keep(hf_refine_problem *p)
         p->best[k] = hf_refine_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
 }
 
-/* Returns the part of the merit that the tolerance of the form-finding leaves open. Forces out of balance by
- * residual_tolerance of the tensions act like an error of this part in each variable. A merit below the resulting
- * change is zero as far as shapes are known. */
+/* Returns the part of the merit that computed shapes leave open. Forces out of balance by residual_tolerance of the
+ * tensions act like an error of this part in each variable. Positions are rounded, too, and lengths in the merit with
+ * them. A merit below the resulting change is zero as far as shapes are known. */
 static double find_noise(const hf_refine_problem *p)
 {
-    double square = 0;
+    const hf_objectives *objectives = p->v.objectives;
+    size_t n_position = 3 * (size_t)p->v.model->n_node;
+    double square = 0, weight = objectives || p->front ? 0 : 1;
     for (int k = 0; k < p->n; k++)
         square += p->gram[k * p->n + k] * p->unit[k] * p->unit[k];
-    return p->v.form->residual_tolerance * sqrt(square);
+    for (int k = 0; !p->front && objectives && k < objectives->n_objective; k++)
+        if (objectives->objective[k].settings.figure <= HF_FIGURE_FACETS)
+            weight += objectives->objective[k].settings.weight;
+    return fmax(p->v.form->residual_tolerance * sqrt(square),
+                weight * POSITION_ROUNDING * hf_max_magnitude(n_position, p->w->position_m));
 }
 
 /* Computes some rows of J'J. */

@@ -572,6 +572,35 @@ START_TEST(points_of_a_study_have_verdicts)
 }
 END_TEST
 
+/* Slack cables have no derivatives that lead out, but a higher pretension does. No objective prefers one pretension to
+ * another here, so the result is the one with the largest margin of those that were tried. */
+START_TEST(a_slack_start_is_scaled_into_the_requirements)
+{
+    static const char *const link[] = {"scale", "each"};
+    const char *dish = source_path("configs/dish-8m.yaml"), *path = temp("a.h5");
+    const char *set = formatted("optimize.variables.0.link=%s", link[_i]);
+    HIFDM(0, "run", dish, "-o", path, "--quiet", "--json", "--set", "scene.paraboloid.rings=4", "--set", keep(set),
+          "--set", "form.pretension_N=5", "--set", "tolerance.samples=100", "--set",
+          "requirements=[{figure: tension, within: [2, 60], load_case: all, share: 0.95}, "
+          "{figure: slack_cables, at_most: 0, load_case: all}]");
+    EXPECT(out_as("run.json"), path, "--", "a['verdict'] == 'pass'", "a['refine']['stop_reason'] == 'converged'",
+           "a['refine']['steps'] == 1", "min(r['relative_margin'] for r in a['requirements'][:1]) > 0.5",
+           "b['/form/tension_N'][:].min() < 2");
+}
+END_TEST
+
+START_TEST(bounds_that_exclude_the_start_are_reported)
+{
+    const char *text = BUILT_SCENE "optimize: {method: lm, variables: [{set: inner, vary: force_density, bounds: "
+                                   "[%s, 1e6], link: set}]}\n";
+    HIFDM(0, "check", file_with("c.yaml", formatted(text, "1e3")));
+    ERR("optimize.variables.0.bounds: the search starts at another shape, because ");
+    ERR(" values after form-finding are outside these bounds. The values are between ");
+    HIFDM(0, "check", file_with("c.yaml", formatted(text, "1e-3")));
+    ck_assert_ptr_null(strstr(said.err, "another shape"));
+}
+END_TEST
+
 Suite *suite_cli_requirements(void)
 {
     Suite *suite = suite_create("cli/requirements");
@@ -596,5 +625,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, samples_of_other_requirements_are_not_used);
     tcase_add_loop_test(tests, a_summary_below_verdicts_is_short, 0, 2);
     tcase_add_test(tests, points_of_a_study_have_verdicts);
+    tcase_add_loop_test(tests, a_slack_start_is_scaled_into_the_requirements, 0, 2);
+    tcase_add_test(tests, bounds_that_exclude_the_start_are_reported);
     return suite;
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { N_EVENT = 14 };
+enum { N_EVENT = 15 };
 static const hf_run_progress events[N_EVENT] = {
     {.phase = HF_RUN_FORM, .best_psi_m = NAN, .merit = NAN},
     {.phase = HF_RUN_SEARCH, .generation = 1, .generations = 100, .evaluations = 50, .best_psi_m = 0.002, .merit = NAN},
@@ -34,6 +34,15 @@ static const hf_run_progress events[N_EVENT] = {
      .is_last = true,
      .merit = NAN},
     {.phase = HF_RUN_REFINE, .max_steps = 200, .best_psi_m = 0.001, .merit = NAN, .first_step = 4, .step = 4},
+    {.phase = HF_RUN_REFINE,
+     .max_steps = 200,
+     .best_psi_m = NAN,
+     .merit = 0.0013,
+     .violation = 1.575,
+     .first_step = 4,
+     .step = 5,
+     .evaluations = 8,
+     .elapsed_s = 30},
     {.phase = HF_RUN_REFINE,
      .max_steps = 200,
      .best_psi_m = 0.0009,
@@ -109,6 +118,8 @@ START_TEST(a_line_is_written_anew_ten_times_a_second)
                  "generation 20/100  best psi 1.0000 mm  25 evaluations/s  at most 2 min 40 s left" CLEAR
                  "generation 21/100  best psi 1.0000 mm  26 evaluations/s  at most 2 min 32 s left" CLEAR
                  "Levenberg-Marquardt: step 4/200  psi 1.0000 mm" CLEAR
+                 "Levenberg-Marquardt: step 5/200  outside the limits and requirements by 1.57 (sum of relative "
+                 "distances)  at most 1 h 37 min left" CLEAR
                  "Levenberg-Marquardt: step 6/200  psi 0.9000 mm, merit 0.0012  at most 50 min 7 s left" CLEAR
                  "front: point 0/21  0 steps of Levenberg-Marquardt  0 us so far" CLEAR
                  "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far" CLEAR
@@ -119,11 +130,13 @@ END_TEST
 
 START_TEST(a_log_has_a_line_every_half_minute)
 {
-    demand(HF_PROGRESS_LOG, "generation 20/100  best psi 1.0000 mm  25 evaluations/s  at most 2 min 40 s left\n"
-                            "Levenberg-Marquardt: step 6/200  psi 0.9000 mm, merit 0.0012  at most 50 min 7 s left\n"
-                            "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far\n"
-                            "sample 128/1000  2 samples/s  7 min 16 s left\n"
-                            "sample 640/1000; the yield with 0.5 times the errors\n");
+    demand(HF_PROGRESS_LOG,
+           "generation 20/100  best psi 1.0000 mm  25 evaluations/s  at most 2 min 40 s left\n"
+           "Levenberg-Marquardt: step 5/200  outside the limits and requirements by 1.57 (sum of relative "
+           "distances)  at most 1 h 37 min left\n"
+           "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far\n"
+           "sample 128/1000  2 samples/s  7 min 16 s left\n"
+           "sample 640/1000; the yield with 0.5 times the errors\n");
 }
 END_TEST
 
@@ -141,6 +154,8 @@ START_TEST(objects_are_written_each_second_and_at_the_end)
         "\"at_most_left_s\": 152.35714285714286}\n"
         "{\"phase\": \"refine\", \"step\": 4, \"max_steps\": 200, \"evaluations\": 0, \"best_psi_m\": 0.001, "
         "\"elapsed_s\": 0, \"at_most_left_s\": 0}\n"
+        "{\"phase\": \"refine\", \"step\": 5, \"max_steps\": 200, \"evaluations\": 8, \"best_psi_m\": null, "
+        "\"merit\": 0.0012999999999999999, \"violation\": 1.575, \"elapsed_s\": 30, \"at_most_left_s\": 5850}\n"
         "{\"phase\": \"refine\", \"step\": 6, \"max_steps\": 200, \"evaluations\": 9, \"best_psi_m\": "
         "0.00089999999999999998, \"merit\": 0.0011999999999999999, \"elapsed_s\": 31, \"at_most_left_s\": 3007}\n"
         "{\"phase\": \"refine\", \"point\": 0, \"points\": 21, \"steps\": 0, \"elapsed_s\": 0}\n"
