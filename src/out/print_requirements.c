@@ -127,7 +127,7 @@ void hf_print_requirements(const hf_summary *s, hf_print_style style, FILE *f)
             of.n_required - of.n_failed - of.n_undecided, of.n_required);
     if (of.n_failed) fprintf(f, ", %d fail%s", of.n_failed, of.n_failed == 1 ? "s" : "");
     if (of.n_undecided) fprintf(f, ", %d undecided", of.n_undecided);
-    if (s->front) fputs("; of the net after form-finding", f);
+    if (s->front || s->status == HF_NO_FEASIBLE) fputs("; of the net after form-finding", f);
     fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     for (int i = 0; i < n_shown; i++)
         print_row(row[i], width, f);

@@ -676,7 +676,8 @@ const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_statu
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
     name_broken(p, design, &start, broken);
     const char *wider = p->model.variable ? "Widen the ranges and bounds of optimize.variables, " : "";
-    snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s. %s%s%s",
+    const char *where = hf_problem_constraints_of(p) ? "at the nearest design, " : "";
+    snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s. %s%s%s", where,
              hf_status_text(status), broken, *advice ? begin_with(advice, first) : wider,
              *advice || *wider ? "or loosen the limits" : "Loosen the limits",
              hf_no_design_cap(p, start.boundary_tension_ratio, hint));

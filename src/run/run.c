@@ -179,16 +179,30 @@ static int list_stages(hf_run *r, hf_run_stage *stage[STAGES_MAX], int *n_design
     return n;
 }
 
-/* Runs the stages in turn. The first failure ends the run; a stop ends it after the stage that is running. */
+/* Makes the net after form-finding the result again, after other shapes used its workspace. */
+static hf_status return_to_form(hf_run *r, hf_messages *messages)
+{
+    hf_problem *p = &r->problem;
+    hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+    return hf_stage_take(r, &p->workspace, messages);
+}
+
+/* Runs the stages in turn. The first failure ends the run; a stop ends it after the stage that is running. If no design
+ * is feasible, the verdicts are on the net after form-finding, because they show what it lacks. */
 static hf_status run_stages(hf_run *r, hf_summary *s, hf_messages *messages)
 {
     hf_run_stage *stage[STAGES_MAX];
     int n_design, n = list_stages(r, stage, &n_design);
-    hf_status status = HF_OK;
+    hf_status status = HF_OK, failed = HF_OK;
     for (int i = 0; i < n && status == HF_OK; i++) {
-        r->has_design = i >= n_design;
+        r->has_design = i >= n_design && failed == HF_OK;
         status = i > 0 && hf_run_must_stop(r) ? HF_INTERRUPTED : stage[i](r, s, messages);
+        if (status != HF_NO_FEASIBLE || i >= n_design || r->problem.settings.n_requirement == 0) continue;
+        failed = status;
+        i = n_design - 1;
+        status = return_to_form(r, messages);
     }
+    if (status == HF_OK) status = failed;
     bool is_unfinished = status == HF_INTERRUPTED || (r->has_design && is_of_machine(status));
     return is_unfinished ? end_unfinished(r, s, status, messages) : status;
 }

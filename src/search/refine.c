@@ -578,6 +578,8 @@ static hf_status refine_from(hf_refine_problem *p, int max_iterations, hf_form_r
     if (start->status == HF_OK && hf_watch_breaks(p->front, p->caller->objectives, 0, start->objective))
         start->status = HF_OUT_OF_LIMITS;
     HF_TRY(minimise(p, max_iterations, r));
+    if (p->is_outside && !p->front && hf_refine_n_constraint(p) > 0) /* the nearest design shows what cannot be met */
+        memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (p->is_outside) return start->status == HF_OK ? HF_OUT_OF_LIMITS : start->status;
     if (p->front) HF_TRY(find_multipliers(p, r));
     return hand_over(p, start, design, r);

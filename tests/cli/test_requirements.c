@@ -589,6 +589,35 @@ START_TEST(a_slack_start_is_scaled_into_the_requirements)
 }
 END_TEST
 
+/* If no design is feasible, the verdicts show what the net after form-finding lacks. They are those of a run that does
+ * not optimise. */
+START_TEST(a_failed_search_leaves_verdicts)
+{
+    static const char *const method[] = {"lm", "ga"};
+    const char *dish = source_path("configs/dish-8m.yaml"), *path = temp("a.h5"), *plain = temp("b.h5");
+#define LACKS                                                                                                          \
+    "--quiet", "--set", "scene.paraboloid.rings=4", "--set", "form.pretension_N=5", "--set", "tolerance.samples=50",   \
+        "--set",                                                                                                       \
+        "requirements=[{figure: tension, within: [2, 60], load_case: all, share: 0.9}, "                               \
+        "{figure: facets, at_most: 2.5e-3}]"
+    const char *set = keep(formatted("optimize.method=%s", method[_i]));
+    HIFDM(3, "run", dish, "-o", path, LACKS, "--set", set, "--set", "optimize.population=8", "--set",
+          "optimize.generations=2");
+    ERR("error: optimize: ");
+    SHELL(0, "sed '/^optimize:/,$d' \"$1\" >\"$2\"", dish, temp("plain.yaml"));
+    HIFDM(0, "run", temp("plain.yaml"), "-o", plain, LACKS);
+    HIFDM(0, "show", plain, "--json");
+    const char *wanted = out_as("plain.json");
+    HIFDM(0, "show", path, "--json");
+    EXPECT(
+        out_as("failed.json"), wanted, "--", "a['status'] == 'no_feasible'", "a['verdict'] == 'fail'",
+        "len(a['load_cases']) == 2",
+        "[r | {'error_bound': 0} for r in a['requirements']] == [r | {'error_bound': 0} for r in b['requirements']]");
+    HIFDM(0, "show", path);
+    OUT("verdict: fail; 0 of 2 requirements pass, 2 fail; of the net after form-finding\n");
+}
+END_TEST
+
 START_TEST(bounds_that_exclude_the_start_are_reported)
 {
     const char *text = BUILT_SCENE "optimize: {method: lm, variables: [{set: inner, vary: force_density, bounds: "
@@ -626,6 +655,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_loop_test(tests, a_summary_below_verdicts_is_short, 0, 2);
     tcase_add_test(tests, points_of_a_study_have_verdicts);
     tcase_add_loop_test(tests, a_slack_start_is_scaled_into_the_requirements, 0, 2);
+    tcase_add_loop_test(tests, a_failed_search_leaves_verdicts, 0, 2);
     tcase_add_test(tests, bounds_that_exclude_the_start_are_reported);
     return suite;
 }
