@@ -63,22 +63,23 @@ static void print_first_order(const hf_tolerance_summary *t, FILE *f)
     fputc('\n', f);
 }
 
+/* Prints the yield, and on the same line by how much all errors could be larger, or must be smaller. */
 static void print_yield(const hf_tolerance_summary *t, FILE *f)
 {
-    if (isfinite(t->yield))
-        fprintf(f,
-                "                yield %.2f %% (95 %% interval %.2f to %.2f %%): samples that meet all requirements\n",
-                100 * t->yield, 100 * t->yield_low, 100 * t->yield_high);
-    if (isnan(t->sigma_scale)) return;
     const char *bound = t->scale_bound > 0 ? "at least " : t->scale_bound < 0 ? "less than " : "";
+    const char *lead = isfinite(t->yield) ? "; " : "                ";
+    if (isfinite(t->yield))
+        fprintf(f, "                yield %.2f %% (95 %% interval %.2f to %.2f %%): samples that meet all requirements",
+                100 * t->yield, 100 * t->yield_low, 100 * t->yield_high);
     if (t->sigma_scale == 0)
-        fputs("                no errors are small enough for the required shares: the net without errors fails\n", f);
+        fprintf(f, "%sno errors are small enough for the required shares, because the net without errors fails", lead);
     else if (t->sigma_scale < 1)
-        fprintf(f, "                for the required shares, reduce all errors to %s%.4g %% (from %d samples)\n", bound,
+        fprintf(f, "%sfor the required shares, reduce all errors to %s%.4g %% (from %d samples)", lead, bound,
                 100 * t->sigma_scale, t->scale_samples);
-    else
-        fprintf(f, "                the required shares hold up to %s%.4g times these errors (from %d samples)\n",
-                bound, t->sigma_scale, t->scale_samples);
+    else if (t->sigma_scale >= 1)
+        fprintf(f, "%sthe required shares hold up to %s%.4g times these errors (from %d samples)", lead, bound,
+                t->sigma_scale, t->scale_samples);
+    if (isfinite(t->yield) || isfinite(t->sigma_scale)) fputc('\n', f);
 }
 
 static void print_shares(const hf_tolerance_summary *t, FILE *f)

@@ -393,11 +393,11 @@ END_TEST
  * factor that is tried keeps 1.5 m; 5.6 would 1.294 m by the quantile of 90 %; and none 0.1 um more than there is. */
 START_TEST(what_errors_may_be_is_told_in_words)
 {
-    static const char *const least[] = {"1.5", "1.294", "1.2930888", "1.2"},
-                             *const told[] = {
-                                 "the required shares hold up to at least 4", "the required shares hold up to 5.",
-                                 "for the required shares, reduce all errors to less than 0.09766 %",
-                                 "no errors are small enough for the required shares: the net without errors fails"};
+    static const char *const
+        least[] = {"1.5", "1.294", "1.2930888", "1.2"},
+        *const told[] = {"the required shares hold up to at least 4", "the required shares hold up to 5.",
+                         "for the required shares, reduce all errors to less than 0.09766 %",
+                         "no errors are small enough for the required shares, because the net without errors fails"};
     file_with("n.csv", "id,x_m,y_m,z_m,role,Fx_N,Fy_N,Fz_N\na,-1,0,0,support,0,0,0\nm,0,0,-0.2,inner,0,0,-2\n");
     file_with("e.csv", "id,i,j,group,law,value,EA_N\np,a,m,inner,length,,2000\n");
     const char *path = temp("a.h5"),
