@@ -3,8 +3,8 @@
  *     tables of points ---> axes, figures of each stage ---> which figures vary ---> verdicts ---> ranking figure
  *       ---> best point ---> whether the figure still improves at the end of an axis, intervals that pass
  *
- * Contents: reading, what varies, verdicts, the best point, the end of an axis, intervals that
- * pass. */
+ * Contents: reading, what varies, verdicts, the best point, columns of the requirements, the end of an axis,
+ * intervals that pass. */
 #include "out/merged.h"
 
 #include "base/elementary.h"
@@ -123,6 +123,9 @@ static hf_status read_requirements(hf_merged *m, hf_messages *messages)
     HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/margin", m->row_name.n, &m->row_margin, messages));
     HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/relative_margin", m->row_name.n, &m->row_relative_margin,
                                 messages));
+    HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/value", m->row_name.n, &m->row_value, messages));
+    HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/at_least", m->row_name.n, &m->row_at_least, messages));
+    HF_TRY(hf_store_read_series(m->path, REQUIREMENTS "/at_most", m->row_name.n, &m->row_at_most, messages));
     if (m->row_verdict.n != m->n || m->row_margin.n != m->n || m->row_relative_margin.n != m->n) return HF_OK;
     m->n_row = m->row_name.n;
     HF_TRY(read_figure(m, HF_MERGED_REQUIREMENTS, REQUIREMENTS, "n_failed", messages));
@@ -436,6 +439,48 @@ static void choose_best(hf_merged *m)
     if (is_rounding && by.n > 1) m->lead = by.figure[1];
 }
 
+/* ---- columns of the requirements ---- */
+
+/* Returns whether the column of row a stands before that of row b. n_decided: points that each row decides. */
+static bool is_before(const hf_merged *m, const int *n_decided, int a, int b)
+{
+    if (n_decided[a] != n_decided[b] || m->best < 0) return n_decided[a] > n_decided[b];
+    const double *margin = m->row_relative_margin.value + (size_t)m->best * (size_t)m->n_row;
+    return margin[a] < margin[b] || (isnan(margin[b]) && !isnan(margin[a]));
+}
+
+int hf_merged_required(const hf_merged *m, int row[HF_REQUIREMENT_ROWS_MAX])
+{
+    int n_decided[HF_REQUIREMENT_ROWS_MAX] = {0}, n = 0;
+    bool is_whole = m->row_value.n == m->n && m->row_at_least.n == m->n && m->row_at_most.n == m->n, has_any = false;
+    if (!is_whole || m->n_row > HF_REQUIREMENT_ROWS_MAX) return 0;
+    for (int i = 0; i < m->n * m->n_row; i++)
+        has_any |= !isnan(m->row_value.value[i]);
+    for (int i = 0; i < m->n; i++)
+        if (m->judgement[i].tightest >= 0) n_decided[m->judgement[i].tightest]++;
+    for (; n < m->n_row && has_any; n++) {
+        int k = n;
+        for (; k > 0 && is_before(m, n_decided, n, row[k - 1]); k--)
+            row[k] = row[k - 1];
+        row[k] = n;
+    }
+    return n;
+}
+
+double hf_merged_bound(const hf_merged *m, const hf_series *bound, int row)
+{
+    double first = (double)NAN;
+    bool has_any = false;
+    for (int i = 0; i < m->n; i++) {
+        double value = bound->value[(size_t)i * (size_t)m->n_row + (size_t)row];
+        if (!hf_merged_is_done(m, i)) continue;
+        if (has_any && value != first && !(isnan(value) && isnan(first))) return (double)NAN;
+        first = value;
+        has_any = true;
+    }
+    return first;
+}
+
 /* ---- the end of an axis ---- */
 
 /* Returns whether point i agrees with the best point in all axes but this one. */
@@ -556,6 +601,9 @@ void hf_merged_free(hf_merged *m)
     hf_series_free(&m->row_verdict);
     hf_series_free(&m->row_margin);
     hf_series_free(&m->row_relative_margin);
+    hf_series_free(&m->row_value);
+    hf_series_free(&m->row_at_least);
+    hf_series_free(&m->row_at_most);
     free(m->judgement);
     hf_series_free(&m->status);
     for (int a = 0; a < HF_STUDY_AXIS_MAX; a++) {

@@ -55,7 +55,9 @@ typedef struct {
     int n_row;                                     /* number of rows of `requirements`; 0: the study has none */
     hf_texts row_name;                             /* [n_row] names of the rows */
     hf_series row_verdict, row_margin, row_relative_margin; /* [n][n_row] hf_verdict, margin, relative margin */
-    hf_merged_judgement *judgement;                         /* [n] owned */
+    /* [n][n_row] value and bounds of each row; NaN: none. The series are empty in files of earlier versions. */
+    hf_series row_value, row_at_least, row_at_most;
+    hf_merged_judgement *judgement; /* [n] owned */
     /* The figure that ranks the points, after what they fail (hf_merged_is_judged), and the best point; -1 when nothing
      * varies. The best point has the minimum of this figure or, of HF_MERGED_MARGIN, its maximum. */
     int lead, best;
@@ -92,6 +94,14 @@ int hf_merged_improves_on(const hf_merged *merged, int axis);
 
 /* Returns whether any point has a verdict. The points then rank by their verdicts first. */
 bool hf_merged_is_judged(const hf_merged *merged);
+
+/* Sets row[n_row] to the requirements in the order of their columns: first those that decide the most points
+ * (hf_merged_judgement.tightest), among equals those with the smallest relative margin at the best point. Returns
+ * n_row, or 0 if no point has a value of a requirement. */
+int hf_merged_required(const hf_merged *merged, int row[HF_REQUIREMENT_ROWS_MAX]);
+
+/* Returns a bound of a requirement, of row_at_least or row_at_most. NaN: there is none, or points differ in it. */
+double hf_merged_bound(const hf_merged *merged, const hf_series *bound, int row);
 
 /* Returns whether a figure is the smallest relative margin, of which more is better. -1: no figure. */
 bool hf_merged_is_margin(const hf_merged *merged, int figure);

@@ -52,5 +52,9 @@ hf_print_text hf_print_counted(int n_inner_node, int n_free);
 /* Returns the factor from a unit of files to that of people, and sets *told to the latter: m to mm, Hz to GHz. */
 double hf_print_scale(const char *unit, const char **told);
 
+#define HF_PRINT_BOUND_SIZE 64
+/* Formats the bounds of a requirement, NaN for none: "at most 0.55 mm", "5 to 60 N". Returns text. */
+const char *hf_print_bound(const char *unit, double at_least, double at_most, char text[HF_PRINT_BOUND_SIZE]);
+
 /* Returns a gain loss for display, dB: 0 when it is rounding. */
 double hf_print_loss_dB(double loss_dB);

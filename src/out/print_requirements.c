@@ -32,11 +32,10 @@ static int compare_rows(const void *a, const void *b)
     return p < q ? -1 : 1; /* in the order of the case */
 }
 
-/* Formats a value of a figure with its unit: "0.6142 mm", "4.974 N", "2". */
-static const char *value_text(hf_required_figure figure, double value, char text[CELL])
+/* Formats a value with its unit for people: "0.6142 mm", "4.974 N", "2". */
+static const char *value_text(const char *unit, double value, char text[CELL])
 {
-    const char *unit;
-    double times = hf_print_scale(hf_required_figure_unit[figure], &unit);
+    double times = hf_print_scale(unit, &unit);
     if (isfinite(value))
         snprintf(text, CELL, "%.4g%s%s", times * value, *unit ? " " : "", unit);
     else
@@ -44,24 +43,29 @@ static const char *value_text(hf_required_figure figure, double value, char text
     return text;
 }
 
-static void print_bound_of(const hf_requirement_verdict *v, char text[CELL])
+const char *hf_print_bound(const char *unit, double at_least, double at_most, char text[HF_PRINT_BOUND_SIZE])
 {
     char low[CELL], high[CELL];
-    const hf_requirement_settings *r = &v->row;
-    value_text(r->figure, r->at_least, low);
-    value_text(r->figure, r->at_most, high);
-    if (isnan(r->at_most))
-        snprintf(text, CELL, "at least %.60s", low);
-    else if (isnan(r->at_least))
-        snprintf(text, CELL, "at most %.60s", high);
+    value_text(unit, at_least, low);
+    value_text(unit, at_most, high);
+    if (isnan(at_most))
+        snprintf(text, HF_PRINT_BOUND_SIZE, "at least %.40s", low);
+    else if (isnan(at_least))
+        snprintf(text, HF_PRINT_BOUND_SIZE, "at most %.40s", high);
     else
-        snprintf(text, CELL, "%.*s to %.60s", (int)strcspn(low, " "), low, high);
+        snprintf(text, HF_PRINT_BOUND_SIZE, "%.*s to %.30s", (int)strcspn(low, " "), low, high);
+    return text;
+}
+
+static const char *unit_of(const hf_requirement_verdict *v)
+{
+    return hf_required_figure_unit[v->row.figure];
 }
 
 static void print_margin_of(const hf_requirement_verdict *v, char text[CELL])
 {
     char margin[CELL];
-    value_text(v->row.figure, v->margin, margin);
+    value_text(unit_of(v), v->margin, margin);
     if (isfinite(v->relative_margin))
         snprintf(text, CELL, "%s%.60s (%+.3g %%)", v->margin >= 0 ? "+" : "", margin, 100 * v->relative_margin);
     else
@@ -76,7 +80,7 @@ static void print_evidence(const hf_requirement_verdict *v, FILE *f)
         fprintf(f, "; %.4g %% of samples meet it (%.4g to %.4g %%)", 100 * v->yield, 100 * v->yield_low,
                 100 * v->yield_high);
     else if (v->verdict == HF_VERDICT_UNDECIDED)
-        fprintf(f, "; the value is certified to %s only", value_text(v->row.figure, v->error_bound, error));
+        fprintf(f, "; the value is certified to %s only", value_text(unit_of(v), v->error_bound, error));
 }
 
 static void print_worst(const hf_requirement_verdict *v, FILE *f)
@@ -86,19 +90,19 @@ static void print_worst(const hf_requirement_verdict *v, FILE *f)
     bool is_alike = is_sample && v->verdict == HF_VERDICT_PASS && v->worst_value == 0; /* no sample has slack cables */
     if (is_alike || (!is_sample && !*v->worst_item && !has_case)) return;
     fprintf(f, "; worst: ");
-    if (is_sample) fprintf(f, "%s in sample %ld", value_text(v->row.figure, v->worst_value, value), v->worst_sample);
+    if (is_sample) fprintf(f, "%s in sample %ld", value_text(unit_of(v), v->worst_value, value), v->worst_sample);
     if (*v->worst_item) fprintf(f, "%s%s", is_sample ? ", " : "", v->worst_item);
     if (has_case) fprintf(f, "%s%s", is_sample || *v->worst_item ? ", " : "", v->worst_load_case);
 }
 
 static void print_row(const hf_requirement_verdict *v, int width, FILE *f)
 {
-    char name[256], shown[512], bound[CELL], margin[CELL], value[CELL];
+    char name[256], shown[512], bound[HF_PRINT_BOUND_SIZE], margin[CELL], value[CELL];
     hf_text_escape(hf_requirement_name(&v->row, name, sizeof name), shown, sizeof shown);
-    print_bound_of(v, bound);
+    hf_print_bound(unit_of(v), v->row.at_least, v->row.at_most, bound);
     print_margin_of(v, margin);
     fprintf(f, "  %-12s  %-*s  %11s  %-18s  margin %s", hf_verdict_word[v->verdict], width, shown,
-            value_text(v->row.figure, v->value, value), bound, margin);
+            value_text(unit_of(v), v->value, value), bound, margin);
     print_evidence(v, f);
     print_worst(v, f);
     fputc('\n', f);

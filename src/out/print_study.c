@@ -17,30 +17,34 @@
 #define POINTS_BEST 32 /* points shown of a larger study, the best ones */
 #define REASON_MOST 60 /* characters of a reason */
 #define CELL_SIZE HF_PRINT_TIGHTEST_SIZE
-#define NAME_MOST 60 /* characters of the name of a requirement */
+#define NAME_MOST 60    /* characters of the name of a requirement */
+#define REQUIRED_MOST 5 /* requirements with a column; --verbose shows all */
 #define INTERVALS_MOST 8
 #define WORD_MOST 24 /* characters of a word that is the value of an axis */
 #define SMALL_M 0.1  /* an axis of smaller lengths is shown in millimetres */
 
 /* ---- columns ---- */
 
-typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_VERDICT, OF_TIGHTEST } column_kind;
+typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_VERDICT, OF_TIGHTEST, OF_REQUIRED } column_kind;
 
-/* Describes a column of the table. Its head has two lines: the name and the unit. */
+/* Describes a column of the table. Its head has lines of the name, which '\n' separates, and below them the unit. */
 typedef struct {
     column_kind kind;
-    int index; /* of the axis or the figure */
-    char head[HF_AXIS_NAME_SIZE], unit[8];
-    double scale; /* factor of the values for this unit */
-    int width;
+    int index; /* of the axis, the figure or the requirement */
+    char head[2 * HF_AXIS_NAME_SIZE];
+    char unit[HF_PRINT_BOUND_SIZE]; /* of a requirement its bounds */
+    double scale;                   /* factor of the values for this unit */
+    int width, n_line;              /* n_line: of the name */
 } column;
 
 typedef struct {
     const hf_merged *m;
-    column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + 4];
+    column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + HF_REQUIREMENT_ROWS_MAX + 4];
     int n_column, n_axis; /* n_axis: the first columns are axes */
     bool is_all;          /* true: all points are rows; false: those of `best` */
     int n_row, best[POINTS_BEST];
+    int n_required, required[HF_REQUIREMENT_ROWS_MAX]; /* requirements in the order of their columns */
+    bool is_short; /* only the first requirements have a column, and other figures have none */
 } table;
 
 /* Makes a name printable, which may contain any characters, with blanks for "_". */
@@ -275,17 +279,22 @@ const char *hf_print_study_verdict(const hf_merged *m, int i, char text[HF_AXIS_
     return text;
 }
 
+/* Returns the unit of a requirement for people. Sets *scale to the factor of its values. */
+static const char *required_unit(const hf_merged *m, int row, double *scale)
+{
+    hf_required_figure figure = hf_ledger_figure(hf_texts_at(&m->row_name, row));
+    const char *unit = figure < HF_REQUIRED_N_FIGURE ? hf_required_figure_unit[figure] : "";
+    *scale = hf_print_scale(unit, &unit);
+    return unit;
+}
+
 /* Formats the margin of a requirement at point i: "-12.3 %" or, without a relative margin, "+0.5 N". */
 static void print_margin(const hf_merged *m, int row, int i, char text[CELL_SIZE])
 {
     size_t at = (size_t)i * (size_t)m->n_row + (size_t)row;
     double relative = m->row_relative_margin.value[at];
-    const char *name = hf_texts_at(&m->row_name, row), *unit = "";
-    size_t n = strcspn(name, " ,"); /* the name begins with the figure */
-    for (int k = 0; k < HF_REQUIRED_N_FIGURE; k++)
-        if (strlen(hf_required_figure_word[k]) == n && !strncmp(name, hf_required_figure_word[k], n))
-            unit = hf_required_figure_unit[k];
-    double scale = hf_print_scale(unit, &unit);
+    double scale;
+    const char *unit = required_unit(m, row, &scale);
     if (isfinite(relative))
         snprintf(text, CELL_SIZE, "%+.1f %%", 100 * relative);
     else
@@ -307,8 +316,45 @@ const char *hf_print_study_tightest(const hf_merged *m, int i, char text[HF_PRIN
     return text;
 }
 
+/* Returns the column of a requirement. The lines of its head are the parts of its name, such as "tension", "of tie",
+ * "all load cases" and "95 % of samples". */
+static column required_column(const hf_merged *m, int row)
+{
+    column c = {.kind = OF_REQUIRED, .index = row};
+    char name[8 * HF_LEDGER_REQUIREMENT_SIZE];
+    const char *unit = required_unit(m, row, &c.scale);
+    double at_least = hf_merged_bound(m, &m->row_at_least, row), at_most = hf_merged_bound(m, &m->row_at_most, row);
+    hf_text_escape(hf_texts_at(&m->row_name, row), name, sizeof name);
+    snprintf(c.head, sizeof c.head, "%.*s", (int)sizeof c.head - 1, name);
+    hf_text_trim_utf8(c.head);
+    size_t figure = strcspn(c.head, " ,");
+    if (c.head[figure] == ' ') c.head[figure] = '\n';
+    for (char *comma = c.head; (comma = strstr(comma, ", ")) != NULL;) {
+        memmove(comma, comma + 1, strlen(comma));
+        *comma = '\n';
+    }
+    if (isnan(at_least) && isnan(at_most)) /* an axis has the bounds */
+        snprintf(c.unit, sizeof c.unit, "%s", unit);
+    else
+        hf_print_bound(hf_required_figure_unit[hf_ledger_figure(hf_texts_at(&m->row_name, row))], at_least, at_most,
+                       c.unit);
+    return c;
+}
+
+/* Formats the value of a requirement at point i. */
+static void print_required(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
+{
+    double value = c->scale * m->row_value.value[(size_t)i * (size_t)m->n_row + (size_t)c->index];
+    strcpy(text, "-");
+    if (!isnan(value)) snprintf(text, CELL_SIZE, "%.4g", value);
+}
+
 static void print_cell(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
 {
+    if (c->kind == OF_REQUIRED) {
+        print_required(m, c, i, text);
+        return;
+    }
     if (c->kind == OF_VERDICT) hf_print_study_verdict(m, i, text);
     if (c->kind == OF_TIGHTEST) hf_print_study_tightest(m, i, text);
     if (c->kind == OF_VERDICT || c->kind == OF_TIGHTEST) return;
@@ -329,11 +375,30 @@ static int point_of(const table *t, int row)
     return t->is_all ? row : t->best[row];
 }
 
+/* Returns line k of a head, counted from the last one, and its length in *n; "" above the first one. */
+static const char *head_line(const column *c, int k, int *n)
+{
+    const char *end = c->head + strlen(c->head), *begin;
+    for (begin = end;; end = --begin) {
+        while (begin > c->head && begin[-1] != '\n')
+            begin--;
+        if (k-- == 0 || begin == c->head) break;
+    }
+    *n = k < 0 ? (int)(end - begin) : 0;
+    return begin;
+}
+
 /* Appends a column that is wide enough for its head and all its cells. */
 static void add_column(table *t, column c)
 {
     char text[CELL_SIZE];
-    c.width = (int)strlen(c.head);
+    c.n_line = 1;
+    for (const char *p = c.head; (p = strchr(p, '\n')) != NULL; p++)
+        c.n_line++;
+    for (int k = 0, n; k < c.n_line; k++) {
+        head_line(&c, k, &n);
+        if (n > c.width) c.width = n;
+    }
     if ((int)strlen(c.unit) > c.width) c.width = (int)strlen(c.unit);
     for (int k = 0; k < t->n_row; k++) {
         print_cell(t->m, &c, point_of(t, k), text);
@@ -354,28 +419,41 @@ static void add_columns(table *t)
     if (!all_done) add_column(t, (column){.kind = OF_STATUS, .head = "status"});
     const hf_merged_figure *margin = hf_merged_find(m, HF_MERGED_REQUIREMENTS, HF_MERGED_MARGIN);
     if (m->n_row > 0) add_column(t, (column){.kind = OF_VERDICT, .head = "verdict"});
-    if (m->n_row > 0 && margin) add_column(t, figure_column(m, (int)(margin - m->figure)));
+    if (m->n_row > 0 && margin && !t->is_short) add_column(t, figure_column(m, (int)(margin - m->figure)));
     if (m->n_row > 0) add_column(t, (column){.kind = OF_TIGHTEST, .head = "tightest requirement and its margin"});
-    for (int rank = 0; rank < N_RANK; rank++)
+    for (int k = 0; k < t->n_required && !(t->is_short && k == REQUIRED_MOST); k++)
+        add_column(t, required_column(m, t->required[k]));
+    for (int rank = 0; rank < N_RANK && !t->is_short; rank++)
         for (int k = 0; k < m->n_figure; k++)
             if (is_shown(m, &m->figure[k]) && !m->figure[k].is_same && rank_of(m, k) == rank)
                 add_column(t, figure_column(m, k));
+}
+
+/* Returns whether a block that begins with column `from` contains column k. */
+static bool is_in_block(const table *t, int from, int to, int k)
+{
+    return k < t->n_axis || (k >= from && k < to);
 }
 
 /* Prints the axes and the columns from `from` to to - 1. */
 static void print_block(const table *t, int from, int to, hf_print_style style, FILE *f)
 {
     char text[CELL_SIZE];
-    for (int line = -2; line < t->n_row; line++) {
-        int i = line < 0 ? -1 : point_of(t, line);
+    int n_line = 1;
+    for (int k = 0; k < t->n_column; k++)
+        if (is_in_block(t, from, to, k) && t->column[k].n_line > n_line) n_line = t->column[k].n_line;
+    for (int line = -1 - n_line; line < t->n_row; line++) {
+        int i = line < 0 ? -1 : point_of(t, line), n = 0;
         bool is_best = i >= 0 && i == t->m->best;
         fputs(is_best && style.has_colour ? HF_PRINT_BOLD : "", f);
         fputs(is_best ? "*" : " ", f);
         for (int k = 0; k < t->n_column; k++) {
             const column *c = &t->column[k];
-            if (k >= t->n_axis && (k < from || k >= to)) continue;
+            if (!is_in_block(t, from, to, k)) continue;
             if (i >= 0) print_cell(t->m, c, i, text);
-            fprintf(f, " %*s", c->width + 1, line == -2 ? c->head : line == -1 ? c->unit : text);
+            const char *shown = i >= 0 ? text : line == -1 ? c->unit : head_line(c, -2 - line, &n);
+            if (line >= -1) n = (int)strlen(shown);
+            fprintf(f, " %*.*s", c->width + 1, n, shown);
         }
         fputs(is_best && style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
     }
@@ -457,7 +535,7 @@ typedef struct {
 
 static void add_item(items *t, const char *text)
 {
-    char shown[4 * HF_AXIS_NAME_SIZE];
+    char shown[20 * HF_AXIS_NAME_SIZE];
     hf_text_escape(text, shown, sizeof shown);
     int n = (int)strlen(shown);
     if (t->used && t->used + n + 3 > WIDTH) {
@@ -479,31 +557,32 @@ static void end_items(const items *t)
 
 static void print_item(const hf_merged *m, const column *c, int i, items *t)
 {
-    char text[3 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE];
+    char text[5 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE];
     print_cell(m, c, i, cell);
     snprintf(text, sizeof text, "%s %s%s%s", c->head, cell, *c->unit ? " " : "", c->unit);
     add_item(t, text);
 }
 
 /* Prints axes and figures that are the same at all points. Load cases show only psi and slack cables. */
-static void print_same(const hf_merged *m, FILE *f)
+static void print_same(const table *t, FILE *f)
 {
-    items t = {.file = f, .title = "at all points"};
+    const hf_merged *m = t->m;
+    items line = {.file = f, .title = "at all points"};
     int i = 0;
     while (i < m->n - 1 && !hf_merged_is_done(m, i))
         i++;
     for (int a = 0; a < m->n_axis; a++) {
         column c = axis_column(m, a);
-        if (!hf_merged_axis_varies(m, a)) print_item(m, &c, i, &t);
+        if (!hf_merged_axis_varies(m, a)) print_item(m, &c, i, &line);
     }
-    for (int k = 0; k < m->n_figure && hf_merged_is_done(m, i); k++) {
+    for (int k = 0; k < m->n_figure && hf_merged_is_done(m, i) && !t->is_short; k++) {
         column c = figure_column(m, k);
         const hf_merged_figure *figure = &m->figure[k];
         if (*figure->load_case && strcmp(figure->key, "psi_m") != 0 && strcmp(figure->key, "n_slack") != 0) continue;
         if (figure->is_same && is_shown(m, figure) && !(isnan(figure->value.value[i]) && !strcmp(c.unit, "%")))
-            print_item(m, &c, i, &t);
+            print_item(m, &c, i, &line);
     }
-    end_items(&t);
+    end_items(&line);
 }
 
 /* Adds whether the best point passes. If it does not, then no point passes. */
@@ -528,7 +607,7 @@ static void print_best(const table *t, FILE *f)
     items line = {.file = f, .title = "best (*)"};
     bool is_judged = hf_merged_is_judged(m);
     if (m->best < 0) return;
-    char text[3 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE], words[HF_PRINT_RANKING_SIZE];
+    char text[5 * HF_AXIS_NAME_SIZE], cell[CELL_SIZE], words[HF_PRINT_RANKING_SIZE];
     if (is_judged) add_verdict(m, &line);
     column lead = {.scale = 1};
     if (m->lead >= 0) {
@@ -622,6 +701,8 @@ void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
 {
     static table t;
     t = (table){.m = m};
+    t.n_required = hf_merged_required(m, t.required);
+    t.is_short = t.n_required > 0 && !style.verbose;
     choose_rows(&t, style.verbose);
     add_columns(&t);
     if (style.has_colour) fputs(HF_PRINT_BOLD, f);
@@ -630,12 +711,17 @@ void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
     print_head(m, f);
     print_advice(m, f);
     print_best(&t, f);
-    print_same(m, f);
+    print_same(&t, f);
     print_failures(m, f);
     if (t.n_column > t.n_axis) {
         fputc('\n', f);
         print_blocks(&t, style, f);
     }
+    if (t.is_short && t.n_required <= REQUIRED_MOST)
+        hf_print_line(f, "  %-13s all requirements; --verbose: other figures, such as psi", "columns");
+    else if (t.is_short)
+        hf_print_line(f, "  %-13s the %d tightest of %d requirements; --verbose: all, and other figures, such as psi",
+                      "columns", REQUIRED_MOST, t.n_required);
     if (!t.is_all) hf_print_line(f, "  the %d best of %d points; --verbose: all", t.n_row, m->n);
     hf_print_line(f, "  %-13s a page to look at: hifdm report %s", "more", m->path);
 }
@@ -669,6 +755,9 @@ static void write_rows(const hf_merged *m, int i, hf_json *j)
         hf_json_open(j, NULL, '{');
         hf_json_text(j, "name", hf_texts_at(&m->row_name, row));
         hf_json_text(j, "verdict", hf_verdict_word[is_known ? (int)verdict : HF_VERDICT_NONE]);
+        if (m->row_value.n == m->n) hf_json_number(j, "value", m->row_value.value[at]);
+        if (m->row_at_least.n == m->n) hf_json_number(j, "at_least", m->row_at_least.value[at]);
+        if (m->row_at_most.n == m->n) hf_json_number(j, "at_most", m->row_at_most.value[at]);
         hf_json_number(j, "margin", m->row_margin.value[at]);
         hf_json_number(j, "relative_margin", m->row_relative_margin.value[at]);
         hf_json_close(j, '}');

@@ -167,6 +167,30 @@ static void write_verdicts(const hf_merged *m, FILE *f)
     hf_json_close(&j, ']');
 }
 
+/* Writes the requirements in the order of their columns: name, unit, bounds and values. Writes nothing without any. */
+static void write_required(const hf_merged *m, FILE *f)
+{
+    hf_json j = {.file = f, .is_due = true};
+    int row[HF_REQUIREMENT_ROWS_MAX], n = hf_merged_required(m, row);
+    if (n == 0) return;
+    hf_json_open_line(&j, "", "required", '[');
+    for (int k = 0; k < n; k++) {
+        const char *name = hf_texts_at(&m->row_name, row[k]);
+        hf_required_figure figure = hf_ledger_figure(name);
+        hf_json_open(&j, NULL, '{');
+        hf_json_text(&j, "name", name);
+        hf_json_text(&j, "unit", figure < HF_REQUIRED_N_FIGURE ? hf_required_figure_unit[figure] : "");
+        hf_json_number(&j, "at_least", hf_merged_bound(m, &m->row_at_least, row[k]));
+        hf_json_number(&j, "at_most", hf_merged_bound(m, &m->row_at_most, row[k]));
+        hf_json_open(&j, "values", '[');
+        for (int i = 0; i < m->n; i++)
+            hf_json_number(&j, NULL, m->row_value.value[(size_t)i * (size_t)m->n_row + (size_t)row[k]]);
+        hf_json_close(&j, ']');
+        hf_json_close(&j, '}');
+    }
+    hf_json_close(&j, ']');
+}
+
 static void write_data(const void *context, FILE *f)
 {
     const study_page *p = context;
@@ -184,6 +208,7 @@ static void write_data(const void *context, FILE *f)
     write_outputs(m, f);
     write_figures(m, f);
     write_verdicts(m, f);
+    write_required(m, f);
     fputs("}}\n", f);
 }
 

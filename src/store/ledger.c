@@ -24,8 +24,8 @@
 #define SYNC_S 5.0                   /* s; a power cut may lose the points that finished since the last sync */
 /* Maximum bytes of one row: the reason, 25 for each number, the lists with their names. An objective takes 138, a
  * surface error 70. Each of 16 load cases has four figures and 68 surface errors of up to 135. Each of 32
- * requirements has a name of up to 255 and three numbers of up to 45. */
-#define LINE_SIZE 420000
+ * requirements has a name of up to 255 and six numbers of up to 45. */
+#define LINE_SIZE 430000
 #define ROWS_MAX                                                                                                       \
     (HF_STUDY_POINT_MAX * (off_t)4096) /* maximum bytes of a file: every point has a row, few rows have 4096 bytes */
 #define N_FIXED 4                      /* fields before the numbers: id, fingerprint, status, reason */

@@ -40,7 +40,7 @@ bool hf_ledger_is_circumstance(const hf_ledger_number *number);
  * stage, the figures of the load cases, and the verdicts on the rows of `requirements`. The surface errors are those of
  * the facets if there are any, else those of the nodes. The names of load cases are NAME.FIGURE here and NAME/FIGURE in
  * a merge. The verdicts are n_failed, n_undecided and relative_margin_min, and for row k verdict_k (of hf_verdict),
- * margin_k and relative_margin_k. */
+ * value_k, at_least_k, at_most_k, margin_k and relative_margin_k. */
 enum { HF_LEDGER_LIST_CASES = 2 * HF_N_STAGE, HF_LEDGER_LIST_REQUIREMENTS, HF_LEDGER_N_LIST };
 #define HF_LEDGER_LOAD_CASES "/load_cases"
 #define HF_LEDGER_REQUIREMENTS "/requirements"
@@ -51,6 +51,9 @@ typedef struct {
     const char *begin; /* prefix of the names of its values */
 } hf_ledger_list;
 extern const hf_ledger_list hf_ledger_list_of[HF_LEDGER_N_LIST];
+
+/* Returns the figure of a requirement from its name, which begins with it; HF_REQUIRED_N_FIGURE: none. */
+hf_required_figure hf_ledger_figure(const char *requirement);
 
 /* hf_ledger_n_field returns the number of fields: the columns, the lists, and the names of the requirements, which ';'
  * separates. hf_ledger_names_field returns the index of the last. hf_ledger_field_name writes the name of field i into

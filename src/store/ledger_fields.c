@@ -127,8 +127,8 @@ static int print_load_cases(const hf_summary *s, char *text, size_t size)
     return (int)used;
 }
 
-/* Writes the verdicts: "n_failed=1 n_undecided=0 relative_margin_min=-0.1 verdict_0=1 margin_0=-0.5 ...". Returns
- * the length. */
+/* Writes the verdicts: "n_failed=1 n_undecided=0 relative_margin_min=-0.1 verdict_0=1 value_0=4.5 at_least_0=5 ...".
+ * Returns the length. */
 static int print_verdicts(const hf_summary *s, char *text, size_t size)
 {
     if (s->n_requirement == 0) return 0;
@@ -137,8 +137,11 @@ static int print_verdicts(const hf_summary *s, char *text, size_t size)
                                    of.n_undecided, of.relative_margin_min);
     for (int i = 0; i < s->n_requirement && used < size; i++) {
         const hf_requirement_verdict *v = &s->requirement[i];
-        used += (size_t)snprintf(text + used, size - used, " verdict_%d=%d margin_%d=%.17g relative_margin_%d=%.17g", i,
-                                 (int)v->verdict, i, v->margin, i, v->relative_margin);
+        used += (size_t)snprintf(text + used, size - used,
+                                 " verdict_%d=%d value_%d=%.17g at_least_%d=%.17g at_most_%d=%.17g margin_%d=%.17g "
+                                 "relative_margin_%d=%.17g",
+                                 i, (int)v->verdict, i, v->value, i, v->row.at_least, i, v->row.at_most, i, v->margin,
+                                 i, v->relative_margin);
     }
     return (int)used;
 }
@@ -152,6 +155,16 @@ static int print_names(const hf_summary *s, char *text, size_t size)
         used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ";" : "",
                                  hf_requirement_name(&s->requirement[i].row, name, sizeof name));
     return (int)used;
+}
+
+hf_required_figure hf_ledger_figure(const char *requirement)
+{
+    size_t n = strcspn(requirement, " ,;");
+    hf_required_figure figure = 0;
+    while (figure < HF_REQUIRED_N_FIGURE && (strlen(hf_required_figure_word[figure]) != n ||
+                                             strncmp(requirement, hf_required_figure_word[figure], n) != 0))
+        figure++;
+    return figure;
 }
 
 /* ---- fields ---- */

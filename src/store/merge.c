@@ -266,6 +266,9 @@ static void write_requirements(merger *m)
             write_column(m, group, figure[k][0], HF_KIND_REAL, 0, "", figure[k][1]);
         }
         write_of_rows(m, group, "verdict", n_row, &hf_layout_verdict, "verdict on each requirement");
+        write_of_rows(m, group, "value", n_row, HF_KIND_REAL, "of the nominal net, or of the share");
+        write_of_rows(m, group, "at_least", n_row, HF_KIND_REAL, "minimum, in the unit of the figure; NaN: none");
+        write_of_rows(m, group, "at_most", n_row, HF_KIND_REAL, "maximum, in the unit of the figure; NaN: none");
         write_of_rows(m, group, "margin", n_row, HF_KIND_REAL, "signed distance from the bound, unit of the figure");
         write_of_rows(m, group, "relative_margin", n_row, HF_KIND_REAL, "margin relative to the bound; NaN: it is 0");
         hf_hdf5_close(&m->io, group);

@@ -54,6 +54,9 @@ async function checkShares(tab, study) {
 // marked.
 export async function checkSurfaceOfStudy(tab, study) {
   await checkCharts(tab, 6, "#sweep", /pretension [\d.]+ N/);
+  const leading = (await tab.locator("#points thead th").allTextContents()).join("; ");
+  assert.ok(!/ψ|RMS|Objective/.test(leading), `figures that nothing requires: ${leading}`);
+  await tab.locator("#points button", { hasText: "show all columns" }).click();
   const titles = await tab.locator("#sweep .chart h3").allTextContents(),
     heads = (await tab.locator("#points thead th").allTextContents()).join("; "),
     text = await tab.locator("body").innerText();
@@ -79,6 +82,7 @@ export async function checkSurfaceOfStudy(tab, study) {
   same(number(await best.locator('[data-label="RMS of facets (mm)"]').textContent()), 1e3 * rms, 5);
   const word = study.verdict[study.best] === "pass" ? "best point" : "closest point"; // best only if it passes
   assert.ok((await tab.locator("#sweep .chart .legend").first().innerText()).includes(word));
+  await tab.reload();
 }
 
 // Along the axis of few values the many of the other one are a map: each cell has the value of its point.
@@ -101,6 +105,25 @@ async function checkHeat(tab, study) {
   await tab.locator(`#sweep input[name=axis][value="${many.name}"]`).check();
 }
 
+// The required figures are those of the result and have columns, as long as nobody asks for others. Their charts have
+// lines at their bounds.
+async function checkRequired(tab, study, row, requirements) {
+  const wanted = ["tension of tie, 90 % of samples: at least 2 N", "psi, 50 % of samples: at most 0.37 mm"],
+    texts = (await tab.locator("#points thead th").allTextContents()).map((text) => text.replaceAll("\u00a0", " "));
+  for (const head of [...wanted, "slack_cables: at most 0"]) assert.ok(texts.includes(head), `${head}: ${texts}`);
+  assert.ok(!texts.some((text) => /ψ/.test(text)), `${texts}`);
+  for (const q of requirements) {
+    const value = await row.locator(`[data-label^="${q.figure}"]`).textContent();
+    same(number(value), (q.unit === "m" ? 1e3 : 1) * q.value, 4);
+  }
+  const drawn = tab.locator("#sweep .chart", { has: tab.locator("h3", { hasText: "tension of tie" }) });
+  for (const chart of await drawn.all()) {
+    assert.match(await chart.locator(".legend").innerText(), /at least 2\sN/);
+    const level = chart.locator('svg[tabindex] line.curve[stroke-dasharray="7 3"]');
+    assert.equal(await level.getAttribute("y1"), await level.getAttribute("y2"));
+  }
+}
+
 // Verdicts are those of the results: in the table, and in the picture of the smallest margin. The best point passes, or
 // none does, and the page says so.
 export async function checkVerdicts(tab, page, made) {
@@ -117,6 +140,7 @@ export async function checkVerdicts(tab, page, made) {
     assert.equal(await row.locator('[data-label="Verdict"]').textContent(), words);
     const margin = number(await row.locator('[data-label^="Smallest margin"]').textContent());
     assert.ok(Math.abs(margin - 100 * least) < 0.051);
+    if (r % 4 === 0) await checkRequired(tab, study, row, summary.requirements);
     seen.set(await link.getAttribute("title"), [summary.verdict, 100 * least]);
   }
   const at = (i) => seen.get(study.id[i]),
@@ -197,6 +221,7 @@ async function checkMarginMaps(tab, study, at) {
 async function checkMarginLine(tab, study, at) {
   const chart = tab.locator("#sweep .chart").first();
   assert.equal(await chart.locator("h3").textContent(), "Smallest relative margin of the requirements");
+  assert.equal(await tab.locator("#sweep .chart h3", { hasText: "tension of tie" }).count(), 1);
   const legend = await chart.locator(".legend").innerText(),
     words = { pass: "passes", fail: "fails", undecided: "undecided" };
   assert.match(legend, /no margin/);

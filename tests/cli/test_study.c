@@ -72,7 +72,7 @@ START_TEST(load_cases_are_columns_of_a_merge)
            "[attribute(a['points/load_cases/cold/' + n], 'units') for n in ('psi_m', 'tension_max_N', 'n_slack')] == "
            "['m', 'N', '']",
            "a['points/load_cases/cold/n_slack'][0] > a['points/load_cases/cold/n_slack'][1]");
-    HIFDM(0, "show", merged);
+    HIFDM(0, "show", merged, "--verbose");
     OUT("design slack 0");
     OUT("cold psi  cold slack");
     ck_assert_ptr_null(strstr(said.out, ", slack 0"));
@@ -141,27 +141,66 @@ START_TEST(points_rank_by_their_requirements)
     HIFDM(0, "show", merged);
     const char *shown = out_as("s.txt");
     OUT("\n  ranked by     failed requirements, then undecided ones, then smallest relative margin\n");
+    HIFDM(0, "show", merged, "--verbose");
+    const char *all = out_as("all.txt");
     HIFDM(0, "report", merged, "-o", page);
 #define OF "a['points/requirements']"
 #define RUN_OF "a['runs'][k]['requirements']"
-    EXPECT(merged, json, shown, data_of(page, "p.json"), "--",
-           "texts(" OF "['name']) == ['tension of tie', 'psi, 50 % of samples', 'slack_cables']",
-           "all(np.array_equal(" OF "[n][i], " RUN_OF "[n][:], equal_nan=True) for i, k in "
-           "enumerate(texts(a['points/id'])) for n in ('margin', 'relative_margin'))",
-           "all([('pass', 'fail', 'undecided', 'none')[v] for v in " OF "['verdict'][i]] == texts(" RUN_OF
-           "['verdict']) for i, k in enumerate(texts(a['points/id'])))",
-           "np.array_equal(" OF "['n_failed'][:], (" OF "['verdict'][:] == 1).sum(1))",
-           "np.array_equal(" OF "['n_undecided'][:], (" OF "['verdict'][:] == 2).sum(1))",
-           "np.array_equal(" OF "['relative_margin_min'][:], np.nanmin(" OF "['relative_margin'][:], 1))",
-           "set(p['verdict'] for p in b['points']) == {'pass', 'fail', 'undecided'} == set(d['study']['verdict'])",
-           "b['best'] == texts(a['points/id'])[np.lexsort((-" OF "['relative_margin_min'][:], " OF
-           "['n_undecided'][:], " OF "['n_failed'][:]))[0]]",
-           "b['best'] != texts(a['points/id'])[int(np.argmin(a['points/form/psi_m'][:]))] and 'closest' not in b",
-           "b['passing'] == int(((" OF "['n_failed'][:] == 0) & (" OF "['n_undecided'][:] == 0)).sum()) > 0",
-           "b['advice'].startswith('%d of 12 points pass; ' % b['passing']) and b['advice'] == d['study']['advice']",
-           "all('%.1f' % (100 * v) in c.decode() for v in a['points/tolerance/yield'][:])",
-           "b['best_by'] == 'relative_margin_min' and d['study']['best'] == texts(a['points/id']).index(b['best'])",
-           "max(len(line) for line in c.decode().splitlines() if 'hifdm report' not in line) <= 100");
+    EXPECT(
+        merged, json, shown, all, data_of(page, "p.json"), "--",
+        "texts(" OF "['name']) == ['tension of tie', 'psi, 50 % of samples', 'slack_cables']",
+        "all(np.array_equal(" OF "[n][i], " RUN_OF "[n][:], equal_nan=True) for i, k in "
+        "enumerate(texts(a['points/id'])) for n in ('margin', 'relative_margin'))",
+        "all([('pass', 'fail', 'undecided', 'none')[v] for v in " OF "['verdict'][i]] == texts(" RUN_OF
+        "['verdict']) for i, k in enumerate(texts(a['points/id'])))",
+        "np.array_equal(" OF "['n_failed'][:], (" OF "['verdict'][:] == 1).sum(1))",
+        "np.array_equal(" OF "['n_undecided'][:], (" OF "['verdict'][:] == 2).sum(1))",
+        "np.array_equal(" OF "['relative_margin_min'][:], np.nanmin(" OF "['relative_margin'][:], 1))",
+        "set(p['verdict'] for p in b['points']) == {'pass', 'fail', 'undecided'} == set(e['study']['verdict'])",
+        "b['best'] == texts(a['points/id'])[np.lexsort((-" OF "['relative_margin_min'][:], " OF
+        "['n_undecided'][:], " OF "['n_failed'][:]))[0]]",
+        "b['best'] != texts(a['points/id'])[int(np.argmin(a['points/form/psi_m'][:]))] and 'closest' not in b",
+        "b['passing'] == int(((" OF "['n_failed'][:] == 0) & (" OF "['n_undecided'][:] == 0)).sum()) > 0",
+        "b['advice'].startswith('%d of 12 points pass; ' % b['passing']) and b['advice'] == e['study']['advice']",
+        /* the required figures stand in the table, and no other figure does */
+        "all(np.array_equal(" OF "[n][i], " RUN_OF "[n][:], equal_nan=True) for i, k in "
+        "enumerate(texts(a['points/id'])) for n in ('value', 'at_least', 'at_most'))",
+        "all('%.4g' % (f * v) in c.decode().split() for k, f in enumerate((1, 1e3, 1)) for v in " OF "['value'][:, k])",
+        "all(w in c.decode() for w in ('at least 2 N', 'at most 0.37 mm', 'slack_cables'))",
+        "not any(w in c.decode() for w in ('psi form', 'psi of 95 %', 'ratio inside', 'yield'))",
+        "all('%.1f' % (100 * v) in d.decode() for v in a['points/tolerance/yield'][:])", "'psi of 95 %' in d.decode()",
+        "[[r['value'], r['at_least'], r['at_most']] for r in b['points'][3]['requirements']['rows']] == "
+        "[[None if np.isnan(v) else v for v in (" OF "['value'][3, k], " OF "['at_least'][3, k], " OF
+        "['at_most'][3, k])] for k in range(3)]",
+        "sorted(r['name'] for r in e['study']['required']) == sorted(texts(" OF "['name']))",
+        "all(r['values'] == " OF "['value'][:, texts(" OF "['name']).index(r['name'])].tolist() for r in "
+        "e['study']['required'])",
+        "b['best_by'] == 'relative_margin_min' and e['study']['best'] == texts(a['points/id']).index(b['best'])",
+        "max(len(line) for line in c.decode().splitlines() if 'hifdm report' not in line) <= 100");
+}
+END_TEST
+
+/* Five requirements have a column: those that decide points, then those that are tightest at the best point. --verbose
+ * shows all. */
+START_TEST(the_tightest_requirements_have_columns)
+{
+    const char *path = file_with(
+        "s.yaml", NET "requirements: [{figure: psi, at_most: 100}, {figure: tension, set: tie, at_least: 6}, {figure: "
+                      "slack_cables, at_most: 0}, {figure: tension, set: front, at_most: 1e3}, {figure: ratio, "
+                      "at_most: 500}, {figure: tension, set: front, at_least: 1}, {figure: loose_nodes, at_most: 0}]\n"
+                      "sweep: {form.pretension_N: [4, 40]}\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    HIFDM(0, "report", temp("s.h5"), "-o", temp("s.html"));
+    HIFDM(0, "show", temp("s.h5"));
+    const char *shown = out_as("s.txt");
+    OUT("\n  columns       the 5 tightest of 7 requirements; --verbose: all, and other figures, such as psi\n");
+    HIFDM(0, "show", temp("s.h5"), "--verbose");
+    EXPECT(temp("s.h5"), data_of(temp("s.html"), "p.json"), shown, out_as("all.txt"), "--",
+           "[r['name'] for r in b['study']['required']] == ['tension of front', 'tension of tie', 'ratio', 'psi', "
+           "'tension "
+           "of front', 'slack_cables', 'loose_nodes']",
+           "'slack_cables' not in c.decode() and 'loose_nodes' not in c.decode()",
+           "'slack_cables' in d.decode() and 'loose_nodes' in d.decode()");
 }
 END_TEST
 
@@ -456,6 +495,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, load_cases_are_columns_of_a_merge);
     tcase_add_test(tcase, a_merged_study_is_shown_as_a_table);
     tcase_add_test(tcase, points_rank_by_their_requirements);
+    tcase_add_test(tcase, the_tightest_requirements_have_columns);
     tcase_add_test(tcase, a_failed_point_has_no_positive_margin);
     tcase_add_test(tcase, a_point_that_fails_is_not_the_best);
     tcase_add_test(tcase, objectives_say_which_point_is_best);

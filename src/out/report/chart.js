@@ -38,7 +38,8 @@ function placeTip(tip, x, y, content) {
 //   isLevel: the same value everywhere, drawn without marks; size: of its marks, in pixels
 //   isMarked: its line has marks, however many points there are
 //   bars: half the width of a bar around each x, which begins at 0
-// marks: { name, at, colour, dash } of vertical lines; the axis of x includes them
+// marks: { name, at, colour, dash } of vertical lines, or with level instead of at of horizontal ones; the axes include
+//   them
 // colour: a variable of the page's style, or a function that returns red, green and blue
 // floor: lower limit of the axis; smaller values are outside the picture
 // x ascends; counted: x are whole numbers; log: "auto" is logarithmic when the values span a factor above 20
@@ -51,7 +52,12 @@ function chart(options) {
   const { title, caption, xLabel, yLabel, unit = "", x, series, marks = [], counted = true, head, floor } = options;
   let { log = "auto" } = options;
   const shownOf = (s) => (floor === undefined ? s.values : s.values.map((v) => (v < floor ? floor : v))),
-    leading = series.filter((s) => !s.free).flatMap((s) => (s.bars === undefined ? shownOf(s) : [0, ...s.values])),
+    upright = marks.filter((m) => m.level === undefined),
+    levels = marks.filter((m) => m.level !== undefined),
+    leading = series
+      .filter((s) => !s.free)
+      .flatMap((s) => (s.bars === undefined ? shownOf(s) : [0, ...s.values]))
+      .concat(levels.map((m) => m.level)),
     positive = range(leading.filter((v) => v > 0));
   const clip = `clip-${++clips}`;
   if (!range(leading) && !leading.includes(Infinity)) return null; // nothing to draw
@@ -120,7 +126,7 @@ function chart(options) {
     const w = width - margin.left - margin.right;
     const h = height - margin.top - margin.bottom;
     const half = Math.max(0, ...series.map((s) => s.bars || 0)),
-      ends = range([x[0] - half, x[x.length - 1] + half, ...marks.map((m) => m.at)]),
+      ends = range([x[0] - half, x[x.length - 1] + half, ...upright.map((m) => m.at)]),
       xAxis = { low: ends[0], high: ends[1] };
     if (xAxis.high === xAxis.low) {
       xAxis.low -= 1;
@@ -170,7 +176,8 @@ function chart(options) {
         { "clip-path": `url(#${clip})` },
         series.flatMap((s) => path(s, sx, sy, yAxis)),
       ),
-      ...marks.map((m) => markLine(m, { x1: sx(m.at), x2: sx(m.at), y1: margin.top, y2: margin.top + h })),
+      ...upright.map((m) => markLine(m, { x1: sx(m.at), x2: sx(m.at), y1: margin.top, y2: margin.top + h })),
+      ...levels.map((m) => markLine(m, { x1: margin.left, x2: margin.left + w, y1: sy(m.level), y2: sy(m.level) })),
       ...series.flatMap((s) => endless(s, sx)),
       svg("g", { class: "at" }),
     ]);

@@ -119,6 +119,11 @@ function boundMarks(row, times, [low, high]) {
     }));
 }
 
+function outsideText(marks) {
+  const far = marks.filter(({ isFar }) => isFar).map(({ name }) => name);
+  return far.length ? `Outside of the picture: ${far.join("; ")}.` : "";
+}
+
 function distribution(row) {
   const { unit, times } = scaleOf(row.unit),
     isBoth = new Set(row.curves.map(({ bound }) => bound)).size > 1, // minimum and maximum tension
@@ -129,7 +134,6 @@ function distribution(row) {
     loadCases = [...new Set(curves.map((c) => c.load_case))],
     x = abscissaeOf(curves, 1e-6 * (ends[1] - ends[0] || Math.abs(ends[1]) || 1)),
     marks = boundMarks(row, times, ends),
-    far = marks.filter(({ isFar }) => isFar).map(({ name }) => name),
     label = `${plainWord(row.figure)}${unit ? ` (${unit})` : ""}`;
   return chart({
     title: row.name,
@@ -148,7 +152,7 @@ function distribution(row) {
       isLevel: true, // a step function has no marks
     })),
     marks: marks.filter(({ isFar }) => !isFar),
-    caption: far.length ? `Outside of the picture: ${far.join("; ")}.` : "",
+    caption: outsideText(marks),
   });
 }
 

@@ -145,6 +145,33 @@ function readFigures(study, mainStage) {
     .sort((f, g) => f.rank - g.rank);
 }
 
+// Returns the required figures in the order of their columns. They have no other stage than that of the verdicts.
+function readRequired(study) {
+  return (study.required || []).map((row, k) => {
+    const { unit, times } = scaleOf(row.unit),
+      inUnit = (name) => (unit ? `${name} (${unit})` : name),
+      hasBound = hasNumber(row.at_least) || hasNumber(row.at_most), // else an axis has it
+      of = (i) => (study.status[i] === "ok" && hasNumber(row.values[i]) ? times * row.values[i] : null);
+    const values = pointsDone(study).map(of),
+      [low, high] = range(values.filter(Number.isFinite)) || [0, 0],
+      varies = isChange(low, high) || new Set(values.map(Number.isFinite)).size > 1;
+    return {
+      key: `required ${k}`,
+      row,
+      title: hasBound ? `${row.name}: ${boundOf(row)}` : row.name,
+      rank: -0.5,
+      column: hasBound ? `${row.name}: ${boundOf(row)}` : inUnit(row.name),
+      unit,
+      main: REQUIRED,
+      yLabel: inUnit(plainWord(row.name.split(/[ ,]/)[0])),
+      log: false,
+      stages: [REQUIRED],
+      drawn: varies ? [REQUIRED] : [],
+      of,
+    };
+  });
+}
+
 // Returns the text of a figure that is the same at all points. Of stages other than the result only psi is listed.
 function sameText(study, f, stage) {
   const i = study.status.findIndex((word, k) => word === "ok" && f.of(k, stage) !== null),
@@ -156,6 +183,9 @@ function sameText(study, f, stage) {
   const value = (f.unit === "mm" ? rounded : fmt)(f.of(i, stage), 5);
   return `${lowered(f.title)}${of} ${value}${f.unit ? `\u00a0${f.unit}` : ""}`;
 }
+
+// Returns whether two values differ by more than rounding.
+const isChange = (low, high) => high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high));
 
 // Returns the share of an axis in the variance of a figure: the variance of the means over points with the same value
 // of the axis. In a full product of axes, the shares of all axes and of their interaction add up to 1.
@@ -225,6 +255,13 @@ function verdictSeries(study, points, figure) {
   return [zero, ...marks.filter(({ values }) => values.some((v) => v !== null))];
 }
 
+// Returns horizontal lines at the bounds of a required figure.
+function levelsOf({ row }, series) {
+  if (!row) return [];
+  const ends = range(series.flatMap(({ values }) => values).filter(Number.isFinite)) || [0, 0];
+  return boundMarks(row, scaleOf(row.unit).times, ends).map(({ at, ...mark }) => ({ ...mark, level: at }));
+}
+
 const isWhole = (x) => x.every(Number.isInteger);
 
 function curveChart(study, figure, axis, others, groups, stage) {
@@ -233,11 +270,12 @@ function curveChart(study, figure, axis, others, groups, stage) {
   const isStaged = isOfStage(figure),
     stages = isOne ? figure.drawn : [stageOf(figure, stage)],
     loadCases = figure.stages.filter(isLoadCase),
+    unstaged = figure.row ? "value" : figure.main === BUILT ? "samples" : "smallest margin",
     styleOf = (of) => STAGE_STYLE[of] || [SERIES[(loadCases.indexOf(of) + 3) % SERIES.length], "1 2"];
   const series = groups.flatMap((group, k) =>
     stages.map((of) => ({
-      name: group.name || (isStaged ? stageWords(of) : of === BUILT ? "samples" : "smallest margin"),
-      stored: figure.key,
+      name: group.name || (isStaged ? stageWords(of) : unstaged),
+      stored: figure.row ? undefined : figure.key,
       values: x.map((v) => (group.at.has(v) ? figure.of(group.at.get(v), of) : null)),
       colour: isOne && isStaged ? styleOf(of)[0] : SERIES[k],
       dash: isOne && isStaged ? styleOf(of)[1] : null,
@@ -252,6 +290,7 @@ function curveChart(study, figure, axis, others, groups, stage) {
         figure,
       ),
     );
+  const bounds = levelsOf(figure, series);
   const isAlone = isOne && isStaged && stages.length === 1 && figure.stages.length > 1; // the chart then has no legend
   return chart({
     ...figure,
@@ -261,32 +300,42 @@ function curveChart(study, figure, axis, others, groups, stage) {
     series,
     counted: isWhole(x),
     floor: ["mm", "N"].includes(figure.unit) ? RESOLVED_MM : undefined, // smaller values are rounding
-    marks:
-      isOne && figure.isLead
+    marks: [
+      ...bounds.filter(({ isFar }) => !isFar),
+      ...(isOne && figure.isLead
         ? [{ name: bestWord(study) + " point", at: axis.value(study.best), colour: "--alarm", dash: "2 3" }]
-        : [],
-    caption: isOne ? "" : `The chart contains one curve for each value of ${listed(others.map((a) => a.name))}.`,
+        : []),
+    ],
+    caption: [
+      isOne ? "" : `The chart contains one curve for each value of ${listed(others.map((a) => a.name))}.`,
+      outsideText(bounds),
+    ]
+      .filter((text) => text)
+      .join(" "),
     head: (i) => headOf(axis, fmt(x[i], 6)),
   });
 }
 
 // Draws a mark for each point.
 function markChart(study, figure, axis, others, stage) {
-  const points = pointsDone(study).sort((i, j) => axis.value(i) - axis.value(j));
+  const points = pointsDone(study).sort((i, j) => axis.value(i) - axis.value(j)),
+    values = points.map((i) => figure.of(i, stageOf(figure, stage))),
+    bounds = levelsOf(figure, [{ values }]);
   return chart({
     ...figure,
+    marks: bounds.filter(({ isFar }) => !isFar),
     xLabel: axis.text,
     x: points.map(axis.value),
     counted: isWhole(points.map(axis.value)),
-    caption: "The chart contains one mark for each completed point of the study.",
+    caption: `The chart contains one mark for each completed point of the study. ${outsideText(bounds)}`.trim(),
     head: (i) => pointName([axis, ...others], points[i]),
     series: [
       {
-        name: figure.title,
-        stored: figure.key,
+        name: figure.row ? "value" : figure.title,
+        stored: figure.row ? undefined : figure.key,
         colour: "--one",
         dots: true,
-        values: points.map((i) => figure.of(i, stageOf(figure, stage))),
+        values,
       },
       ...(figure.key === MARGIN ? verdictSeries(study, points, figure) : []),
     ],
@@ -397,7 +446,7 @@ function changesAlong(figure, groups, stage) {
   return groups.some(({ at }) => {
     const values = [...at.values()].map((i) => figure.of(i, from)),
       [low, high] = range(values) || [0, 0];
-    return high - low > 1e-6 * Math.max(Math.abs(low), Math.abs(high)) || new Set(values.map(Number.isFinite)).size > 1;
+    return isChange(low, high) || new Set(values.map(Number.isFinite)).size > 1;
   });
 }
 
@@ -512,6 +561,7 @@ function writeCurves(study, axes, figures, mainStage) {
 
 const FAILURES_SHOWN = 5,
   COLUMNS_WIDE = 11, // a table with more columns has narrow ones
+  REQUIRED_SHOWN = 5, // requirements with a column and a chart at first, as in the text
   POINTS_SHOWN = 64;
 
 // Returns a link to a file only. Any other scheme in the data becomes part of a path.
@@ -533,10 +583,11 @@ function figureColumn(study, f, stage) {
     name = f.key === "psi_m" ? `ψ ${stageWords(stage)}` : isLoadCase(stage) ? `${f.column}, ${stage}` : f.column,
     percents = (v) => (Number.isFinite(v) ? minus(v.toFixed(1)) : minus(fmt(v))),
     isCount = /^n_/.test(f.key),
-    format = /ratio$/.test(f.key) ? fmtRatio : isCount ? fmtCount : f.unit === "%" ? percents : aligned;
+    plain = f.row && !f.unit ? fmt : aligned, // such as a number of slack cables
+    format = /ratio$/.test(f.key) ? fmtRatio : isCount ? fmtCount : f.unit === "%" ? percents : plain;
   const show = (i) =>
     of(i) === null ? (f.isLoss && f.isBeyond(i, stage) ? "> 3" : "–") : format(of(i), f.unit === "mm" ? 5 : 4);
-  return { name: f.unit ? `${name} (${f.unit})` : name, number: true, of, show };
+  return { name: f.unit && !f.row ? `${name} (${f.unit})` : name, number: true, of, show };
 }
 
 function writePoints(study, axes, figures, best) {
@@ -553,7 +604,7 @@ function writePoints(study, axes, figures, best) {
   const statusCell = (i) =>
     el("span", { class: "status", title: study.reason[i] || undefined }, statusText(study.status[i]));
   const tightestCell = (i) => el("span", { class: "tightest" }, study.tightest[i]);
-  const columns = [
+  const leading = [
     ...varying.map((a) => ({ name: a.text, number: a.isNumber, of: a.value, show: (i) => a.label(i) })),
     { name: "Status", of: (i) => statusText(study.status[i]), show: statusCell },
     ...(study.tightest.length
@@ -562,15 +613,27 @@ function writePoints(study, axes, figures, best) {
           { name: "Tightest requirement and its margin", of: (i) => study.tightest[i], show: tightestCell },
         ]
       : []),
-    ...figures
-      .filter(isInTable)
-      .flatMap((f) =>
-        f.drawn
-          .filter((s) => f.key === "psi_m" || s === f.main || (isLoadCase(s) && !f.isError))
-          .map((s) => figureColumn(study, f, s)),
-      ),
-    { name: "Result", of: (i) => study.id[i], show: (i) => pointLink(study, axes, i) },
   ];
+  const columnsOf = (some) =>
+      some
+        .filter(isInTable)
+        .flatMap((f) =>
+          f.drawn
+            .filter((s) => f.key === "psi_m" || s === f.main || (isLoadCase(s) && !f.isError))
+            .map((s) => figureColumn(study, f, s)),
+        ),
+    link = { name: "Result", of: (i) => study.id[i], show: (i) => pointLink(study, axes, i) },
+    required = figures.filter((f) => f.row).map((f) => figureColumn(study, f, REQUIRED)),
+    isMargin = (f) => f.key === MARGIN;
+  // With requirements, the table first has the tightest of them; the other figures are behind a button.
+  const all = [
+    ...leading,
+    ...columnsOf(figures.filter(isMargin)),
+    ...required,
+    ...columnsOf(figures.filter((f) => !isMargin(f) && !f.row)),
+    link,
+  ];
+  const n = leading.length + columnsOf(figures.filter(isMargin)).length + Math.min(required.length, REQUIRED_SHOWN);
   const notes = [];
   if (fixed.length) notes.push(`All points have ${fixed.map((a) => headOf(a, a.label(0))).join(", ")}.`);
   if (study.ranked_by) notes.push(`The points are ranked by ${study.ranked_by}.`);
@@ -581,21 +644,37 @@ function writePoints(study, axes, figures, best) {
         "result file.",
     );
   else if (study.file.some((p) => p)) notes.push("The last column links to the result file of each point.");
-  const points = sortableTable({
-    caption: "Points",
-    columns,
-    n: study.n,
-    by: -1,
-    most: POINTS_SHOWN,
-    dense: columns.length > COLUMNS_WIDE,
-    search: "value or status",
-    words: (i) =>
-      [statusText(study.status[i]), study.reason[i], study.tightest[i] || "", ...columns.map(({ show }) => show(i))]
-        .map((text) => (typeof text === "string" ? text : study.id[i]))
-        .join(" "),
+  const tableOf = (columns) => {
+    const points = sortableTable({
+      caption: "Points",
+      columns,
+      n: study.n,
+      by: -1,
+      most: POINTS_SHOWN,
+      dense: columns.length > COLUMNS_WIDE,
+      search: "value or status",
+      words: (i) =>
+        [statusText(study.status[i]), study.reason[i], study.tightest[i] || "", ...columns.map(({ show }) => show(i))]
+          .map((text) => (typeof text === "string" ? text : study.id[i]))
+          .join(" "),
+    });
+    points.first(best);
+    return points.node;
+  };
+  const isShort = required.length && n + 1 < all.length,
+    table = tableOf(isShort ? [...all.slice(0, n), link] : all),
+    more = el("button", { type: "button" }, "show all columns");
+  more.addEventListener("click", () => {
+    table.replaceWith(tableOf(all));
+    more.parentElement.remove();
   });
-  points.first(best);
-  section("points", "Points", el("p", {}, notes.join(" ")), points.node);
+  section(
+    "points",
+    "Points",
+    el("p", {}, notes.join(" ")),
+    table,
+    isShort ? el("div", { class: "tools" }, more) : null,
+  );
 }
 
 // ---- the page ----
@@ -626,7 +705,7 @@ function writeStudy(study) {
     axes = readAxes(study),
     varying = axes.filter((a) => a.varies);
   const mainStage = study.main,
-    figures = readFigures(study, mainStage),
+    figures = [...readFigures(study, mainStage), ...readRequired(study)].sort((f, g) => f.rank - g.rank),
     best = study.best;
   const leads = study.figure.find((f) => f.lead) || {};
   for (const f of figures) f.isLead = f.key === leads.key;
@@ -677,6 +756,7 @@ function writeStudy(study) {
       missing ? figure("missing", fmtCount(missing)) : null,
     ),
   );
-  writeCurves(study, axes, figures, mainStage);
+  const isDrawn = (f) => !f.row || study.required.indexOf(f.row) < REQUIRED_SHOWN;
+  writeCurves(study, axes, figures.filter(isDrawn), mainStage);
   writePoints(study, axes, figures, best);
 }
