@@ -60,8 +60,46 @@ static hf_status rank_cables(const hf_series *samples, const hf_series *at, doub
     return HF_OK;
 }
 
+/* Returns the margin of a value of this curve to the bounds that the curve belongs to. Both bounds of a tension have a
+ * curve of their own. */
+static double margin_of(const hf_report_curve *c, const hf_requirement_settings *row, double value)
+{
+    bool is_tension = row->figure == HF_REQUIRED_TENSION;
+    double low = is_tension && !c->is_low ? (double)NAN : value - row->at_least,
+           high = is_tension && c->is_low ? (double)NAN : row->at_most - value;
+    return fmin(low, high); /* fmin ignores NaN */
+}
+
+/* Takes the samples of a load case into the worst of all load cases. A sample without a value has none there, too. */
+static hf_status take_worst(const hf_report_curve *c, const hf_requirement_settings *row, const hf_series *samples,
+                            hf_series *worst)
+{
+    bool is_first = worst->n == 0;
+    if (is_first) worst->value = malloc(((size_t)samples->n + 1) * sizeof *worst->value);
+    if (!worst->value) return HF_NO_MEMORY;
+    if (is_first) worst->n = samples->n;
+    for (int i = 0; i < worst->n; i++) {
+        double value = i < samples->n ? samples->value[i] : (double)NAN;
+        bool has_both = !isnan(value) && (is_first || !isnan(worst->value[i]));
+        if (!has_both)
+            worst->value[i] = (double)NAN;
+        else if (is_first || margin_of(c, row, value) < margin_of(c, row, worst->value[i]))
+            worst->value[i] = value;
+    }
+    return HF_OK;
+}
+
+/* Appends a curve of samples. `samples` are sorted. */
+static hf_status add_curve(hf_report_curve c, hf_series *samples, hf_report_curves *curves)
+{
+    if (samples->n == 0) return HF_OK;
+    HF_TRY(keep_values(samples, &c));
+    curves->curve[curves->n++] = c;
+    return HF_OK;
+}
+
 static hf_status read_curve(const char *path, hf_report_curve c, const hf_requirement_settings *row, int n_cable,
-                            hf_report_curves *curves, hf_messages *messages)
+                            hf_series *worst, hf_report_curves *curves, hf_messages *messages)
 {
     const hf_required_column column = {.figure = row->figure,
                                        .is_minimum = c.is_low,
@@ -79,8 +117,8 @@ static hf_status read_curve(const char *path, hf_report_curve c, const hf_requir
     if (status == HF_OK && samples.n > 0) {
         if (at.n == samples.n)
             status = rank_cables(&samples, &at, c.is_low ? row->at_least : row->at_most, n_cable, &c);
-        if (status == HF_OK) status = keep_values(&samples, &c);
-        if (status == HF_OK) curves->curve[curves->n++] = c;
+        if (status == HF_OK && worst) status = take_worst(&c, row, &samples, worst);
+        if (status == HF_OK) status = add_curve(c, &samples, curves);
         if (status == HF_NO_MEMORY) hf_error(messages, status, "%s: out of memory", path);
     }
     hf_series_free(&samples);
@@ -88,25 +126,41 @@ static hf_status read_curve(const char *path, hf_report_curve c, const hf_requir
     return status;
 }
 
+/* Reads the curves of row i that belong to its minimum or to its maximum: of each load case and, if the row applies to
+ * all of them, the worst of all. */
+static hf_status read_side(const char *path, const hf_summary *s, int i, bool is_low, hf_report_curves *curves,
+                           hf_messages *messages)
+{
+    const hf_requirement_settings *row = &s->requirement[i].row;
+    bool is_all = !strcmp(row->load_case, "all");
+    hf_report_curve c = {.row = i, .is_low = is_low};
+    hf_series worst = {0};
+    hf_status status = HF_OK;
+    for (int state = 0; state <= s->n_load_case && status == HF_OK; state++) {
+        c.load_case = state ? s->load_case[state - 1].name : "nominal";
+        if (is_all || !strcmp(row->load_case, c.load_case))
+            status = read_curve(path, c, row, s->n_cable, is_all ? &worst : NULL, curves, messages);
+    }
+    c.load_case = "all";
+    if (status == HF_OK && add_curve(c, &worst, curves) != HF_OK)
+        status = hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
+    hf_series_free(&worst);
+    return status;
+}
+
 hf_status hf_report_curves_read(const char *path, const hf_summary *s, hf_report_curves *curves, hf_messages *messages)
 {
     *curves = (hf_report_curves){0};
     if (s->n_requirement == 0) return HF_OK;
-    curves->curve = calloc(2 * (size_t)s->n_requirement * (size_t)(1 + s->n_load_case), sizeof *curves->curve);
+    curves->curve = calloc(2 * (size_t)s->n_requirement * (size_t)(2 + s->n_load_case), sizeof *curves->curve);
     if (!curves->curve) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     for (int i = 0; i < s->n_requirement; i++) {
         const hf_requirement_settings *row = &s->requirement[i].row;
-        bool is_all = !strcmp(row->load_case, "all");
-        for (int state = 0; state <= s->n_load_case && !isnan(row->share); state++) {
-            hf_report_curve c = {.row = i, .load_case = state ? s->load_case[state - 1].name : "nominal"};
-            if (!is_all && strcmp(row->load_case, c.load_case) != 0) continue;
-            bool has_low = !isnan(row->at_least), has_high = !isnan(row->at_most);
-            bool is_same = has_low && has_high && row->figure != HF_REQUIRED_TENSION; /* of both bounds */
-            c.is_low = true;
-            if (has_low) HF_TRY(read_curve(path, c, row, s->n_cable, curves, messages));
-            c.is_low = false;
-            if (has_high && !is_same) HF_TRY(read_curve(path, c, row, s->n_cable, curves, messages));
-        }
+        bool has_low = !isnan(row->at_least), has_high = !isnan(row->at_most);
+        bool is_same = has_low && has_high && row->figure != HF_REQUIRED_TENSION; /* of both bounds */
+        if (isnan(row->share)) continue;
+        if (has_low) HF_TRY(read_side(path, s, i, true, curves, messages));
+        if (has_high && !is_same) HF_TRY(read_side(path, s, i, false, curves, messages));
     }
     return HF_OK;
 }

@@ -7,10 +7,10 @@
 #include <hifdm/summary.h>
 #include <stdio.h>
 
-/* Contains the samples of one figure in one load case. */
+/* Contains the samples of one figure in one load case, or the worst of all load cases in each sample. */
 typedef struct {
     int row;               /* of `requirements` */
-    const char *load_case; /* borrowed from the summary */
+    const char *load_case; /* borrowed from the summary; "all": the worst of all load cases */
     bool is_low;           /* the figure belongs to at_least, else to at_most */
     int n;                 /* number of samples */
     int n_value;           /* number of the values below */

@@ -175,7 +175,7 @@ export async function checkWords(tab, made) {
 }
 
 // The rows of requirements are those of the file, the failed and the tightest first and the others behind a button;
-// the distribution function of a row reaches its yield at its bound.
+// the distribution function of a row reaches its yield at its bound, that of the worst if there are several load cases.
 export async function checkRequirements(tab, made) {
   const { requirements, verdict } = made.summary,
     rank = ["fail", "undecided", "pass"],
@@ -209,12 +209,15 @@ export async function checkRequirements(tab, made) {
     ),
   );
   requirements.forEach((row, i) => {
-    const states = row.load_case === "all" ? 2 : 1,
+    const states = row.load_case === "all" ? 3 : 1, // two and the worst of them
       ends = row.figure === "tension" && row.at_least !== null && row.at_most !== null ? 2 : 1;
     assert.equal(at[i].length, row.share === null ? 0 : states * ends, `curves of ${row.figure}`);
-    if (row.share === null || states * ends > 1 || row.at_most === null) return;
-    assert.ok(at[i][0][2] === 400 && Math.abs(at[i][0][1] - 100 * row.yield) < 100 / 400, `${at[i]}: ${row.yield}`);
+    if (row.share === null || ends > 1 || row.at_most === null) return;
+    const [state, share, n] = at[i].at(-1);
+    assert.equal(state, row.load_case);
+    assert.ok(n === 400 && Math.abs(share - 100 * row.yield) < 100 / 400, `${at[i]}: ${row.yield}`);
   });
+  await checkWorst(tab, made);
   await checkTensions(tab, made);
   await checkCostly(tab, made);
   assert.equal(await tab.locator("#distributions .chart").count(), 4);
@@ -225,6 +228,46 @@ export async function checkRequirements(tab, made) {
     sorted.filter((row) => row.share !== null).map((row) => row.figure),
   );
   await tab.reload();
+}
+
+// The curve of all load cases has the worst value of each sample. The charts have horizontal lines at the required
+// shares, and the legend explains both.
+async function checkWorst(tab, made) {
+  for (const [name, stored, worse, bound, level, words] of [
+    ["psi, all", "psi", Math.max, "at_most", 95, "at least 95 % of the samples at most 80 mm"],
+    ["tension of inner, all", "tension_min_inner", Math.min, "at_least", 5, "at most 5 % of the samples below 4 N"],
+    ["tension of inner, all", "tension_max_inner", Math.max, "at_most", 95, "at least 95 % of the samples at most 60"],
+  ]) {
+    const of = (state) => samplesOf(made, `/tolerance/load_case/${state}/${stored}`, false),
+      [nominal, cold] = ["nominal", "cold"].map(of),
+      worst = nominal.map((v, i) => worse(v, cold[i])).sort((a, b) => a - b),
+      [value, share] = await tab.evaluate(
+        ([begin, side]) => {
+          const row = data.required.find((r) => r.name.startsWith(begin)),
+            curve = row.curves.find((c) => c.load_case === "all" && c.bound === side);
+          return [Array.from(curve.value), Array.from(curve.share)];
+        },
+        [name, bound],
+      );
+    value.forEach((v, k) => same(v, worst[Math.round(share[k] * worst.length) - 1], 6));
+    const drawn = tab.locator("#distributions .chart", { has: tab.locator("h3", { hasText: name }) }),
+      legend = (await drawn.locator(".legend").innerText()).replaceAll("\u00a0", " ");
+    assert.match(legend, /worst of all load cases in each sample/);
+    const levels = await drawn.locator("svg[tabindex]").evaluate((picture) => {
+      const texts = [...picture.querySelectorAll("text[text-anchor=end]")],
+        [none, all] = ["0", "100"].map((text) => texts.find((t) => t.textContent === text).getAttribute("y") - 4);
+      return [...picture.querySelectorAll("line.curve")]
+        .filter((line) => line.getAttribute("y1") === line.getAttribute("y2"))
+        .map((line) => (100 * (line.getAttribute("y1") - none)) / (all - none));
+    });
+    assert.ok(legend.includes(`required: ${words}`), legend);
+    assert.ok(
+      levels.some((at) => Math.abs(at - level) < 0.01),
+      `lines at ${levels}`,
+    );
+  }
+  const one = tab.locator("#distributions .chart", { has: tab.locator("h3", { hasText: "psi, 90" }) });
+  assert.ok(!(await one.locator(".legend").innerText()).includes("worst"), "the worst of one load case");
 }
 
 // Each set has a row in each load case: its tensions, those of the samples, the tightest required bounds, and a picture

@@ -36,6 +36,7 @@ function placeTip(tip, x, y, content) {
 // ---- one chart: series over x with a cursor that follows the pointer or the arrow keys ----
 // series: { name, stored, values, colour, dash, dots: marks instead of a line, free: may lie outside the picture }
 //   isLevel: the same value everywhere, drawn without marks; size: of its marks, in pixels
+//   isWide: drawn as a band, below the series that follow
 //   isMarked: its line has marks, however many points there are
 //   bars: half the width of a bar around each x, which begins at 0
 // marks: { name, at, colour, dash } of vertical lines, or with level instead of at of horizontal ones; the axes include
@@ -80,7 +81,7 @@ function chart(options) {
   function mark(s) {
     return s.dots
       ? { class: "dots", "stroke-width": s.size || (s.values.length > 300 ? 3 : 5) }
-      : { class: "curve", "stroke-dasharray": s.dash };
+      : { class: s.isWide ? "curve wide" : "curve", "stroke-dasharray": s.dash };
   }
 
   function bars(s, sx, sy) {

@@ -124,14 +124,29 @@ function outsideText(marks) {
   return far.length ? `Outside of the picture: ${far.join("; ")}.` : "";
 }
 
+// Returns the required share as horizontal lines: at a maximum at least that share of the samples is at most the bound,
+// at a minimum at most the rest is below it.
+function shareMarks(row) {
+  const percents = (share) => `${fmt(100 * share, 4)}\u00a0% of the samples`,
+    { share, at_most: high, at_least: low, unit } = row;
+  const line = (part, name) => ({ level: 100 * part, name: `required: ${name}`, colour: "--four", dash: "2 3" });
+  return [
+    ...(hasNumber(high) ? [line(share, `at least ${percents(share)} at most ${withUnit(high, unit)}`)] : []),
+    ...(hasNumber(low) ? [line(1 - share, `at most ${percents(1 - share)} below ${withUnit(low, unit)}`)] : []),
+  ];
+}
+
+const WORST = "all"; // no load case has this name
+
 function distribution(row) {
   const { unit, times } = scaleOf(row.unit),
     isBoth = new Set(row.curves.map(({ bound }) => bound)).size > 1, // minimum and maximum tension
     curves = row.curves
-      .map((c) => ({ ...c, value: Array.from(c.value, (v) => times * v) }))
-      .filter((c) => c.value.length);
+      .map((c) => ({ ...c, isWorst: c.load_case === WORST, value: Array.from(c.value, (v) => times * v) }))
+      .filter((c) => c.value.length)
+      .sort((a, b) => b.isWorst - a.isWorst); // below the others
   const ends = range(curves.flatMap(({ value }) => [value[0], value[value.length - 1]])),
-    loadCases = [...new Set(curves.map((c) => c.load_case))],
+    loadCases = [...new Set(curves.filter((c) => !c.isWorst).map((c) => c.load_case))],
     x = abscissaeOf(curves, 1e-6 * (ends[1] - ends[0] || Math.abs(ends[1]) || 1)),
     marks = boundMarks(row, times, ends),
     label = `${plainWord(row.figure)}${unit ? ` (${unit})` : ""}`;
@@ -145,13 +160,16 @@ function distribution(row) {
     log: false,
     head: (i) => `${plainWord(row.figure)} of at most ${fmt(x[i], 5)}${unit ? ` ${unit}` : ""}`,
     series: curves.map((c) => ({
-      name: `${c.load_case}${isBoth ? (c.bound === "at_least" ? ", minimum" : ", maximum") : ""}`,
+      name:
+        (c.isWorst ? "worst of all load cases in each sample" : c.load_case) +
+        (isBoth ? (c.bound === "at_least" ? ", minimum" : ", maximum") : ""),
       values: x.map((v) => shareBelow(c, v)),
-      colour: SERIES[loadCases.indexOf(c.load_case) % SERIES.length],
+      isWide: c.isWorst,
+      colour: c.isWorst ? "--six" : SERIES[loadCases.indexOf(c.load_case) % SERIES.length],
       dash: isBoth && c.bound === "at_most" ? "5 3" : undefined,
       isLevel: true, // a step function has no marks
     })),
-    marks: marks.filter(({ isFar }) => !isFar),
+    marks: [...marks.filter(({ isFar }) => !isFar), ...shareMarks(row)],
     caption: outsideText(marks),
   });
 }
@@ -191,7 +209,9 @@ function writeDistributions() {
       "p",
       {},
       "The charts show the share of the as-built samples whose value is at most that on the axis. Each load case has " +
-        "its own curve. Vertical lines are the bounds of the requirement. Samples without a shape have no value.",
+        "its own curve. If the requirement applies to all load cases, the wide curve shows the worst of their " +
+        "values in each sample. This curve decides the verdict. Vertical lines are the bounds of the requirement. " +
+        "Horizontal lines are the required share. Samples without a shape have no value.",
     ),
     charts,
     rest.length ? el("div", { class: "tools" }, more) : null,

@@ -69,7 +69,9 @@ function outsideOf(row, c) {
 
 // Returns the curve of the load case in which a row costs most.
 const costliestCurve = (row) =>
-  row.curves.filter(({ value }) => value.length).reduce((a, b) => (outsideOf(row, a) >= outsideOf(row, b) ? a : b));
+  row.curves
+    .filter((c) => c.value.length && c.load_case !== WORST)
+    .reduce((a, b) => (outsideOf(row, a) >= outsideOf(row, b) ? a : b));
 
 // Draws the histogram of the figure of a row.
 const BINS = 40;
