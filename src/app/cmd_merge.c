@@ -2,6 +2,7 @@
 #include "app/study_files.h"
 
 #include "out/print.h"
+#include "run/requirements_stage.h"
 #include "store/merge.h"
 
 static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *messages)
@@ -17,6 +18,7 @@ static hf_status command_merge(const hf_options *o, FILE *file, hf_messages *mes
                           "--retry outdated' first, or use --force to merge without these points",
                           folder, points.count[HF_POINT_OUTDATED], o->file);
     if (status == HF_OK) status = hf_merge(&study, folder, &points, output, o->force, messages);
+    if (status == HF_OK) hf_requirements_stage_doubt_points(&points, messages);
     if (status == HF_OK && !o->quiet)
         hf_print_line(file, "%s: %d points, %d of them done, %d failed", output, points.n_point,
                       points.count[HF_POINT_DONE], points.count[HF_POINT_FAILED]);

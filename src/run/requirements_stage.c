@@ -4,7 +4,7 @@
  *     rows of the samples (tolerance_stage.c)                                   -> verdicts of the shares
  *         |
  *         v
- *     summary; warnings about bounds in another unit than the figure */
+ *     summary; warnings about bounds in another unit than the figure, also once for all points of a study */
 #include "run/requirements_stage.h"
 
 #include "base/arena.h"
@@ -202,31 +202,93 @@ hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *q, co
     return hf_statistics_judge(t, rows, s->requirement);
 }
 
-/* Warns about a length, force or mass that is far off all bounds of its row. Such a bound is probably in mm, kN or g.
- * The factor allows that the value is five times off the bound in the right unit: with a bound in mm, a value that
- * fails by 8 % is less than a thousand times off. A bound of 0 has no unit to be wrong in. */
+/* Returns by which factor a length, force or mass is off the nearer bound of its row, and sets *is_most to whether that
+ * is at_most. Returns 0 if there is no such factor: a bound of 0 has no unit to be wrong in. */
+static double factor_of(hf_required_figure figure, const double bounds[2], double value, bool *is_most)
+{
+    const char *unit = hf_required_figure_unit[figure];
+    double nearest = 0;
+    if ((strcmp(unit, "m") != 0 && strcmp(unit, "N") != 0 && strcmp(unit, "kg") != 0) || !(fabs(value) > 1e-9))
+        return 0;
+    for (int k = 0; k < 2; k++) {
+        double factor = bounds[k] > 0 ? bounds[k] / fabs(value) : (double)NAN, off = fmax(factor, 1 / factor);
+        if (isnan(factor) || (nearest > 0 && !(off < nearest))) continue;
+        nearest = off;
+        *is_most = k == 1;
+    }
+    return nearest;
+}
+
+/* Warns about a bound that is probably in mm, kN or g. The factor allows that the value is five times off the bound in
+ * the right unit: with a bound in mm, a value that fails by 8 % is less than a thousand times off. */
 #define OTHER_UNIT 200.0
+static void doubt_bound(int i, const char *key, hf_required_figure figure, double bound, const char *what, double value,
+                        double factor, hf_messages *messages)
+{
+    const char *unit = hf_required_figure_unit[figure], *small = *unit == 'm' ? "mm" : *unit == 'k' ? "g" : "mN";
+    if (factor < OTHER_UNIT) return;
+    hf_warning(messages,
+               "requirements.%d%s: the bound %.6g %s (%.6g %s) and the %s %.6g %s (%.6g %s) differ by a factor of "
+               "%.3g. Check the unit of the bound",
+               i, key, bound, unit, bound * 1e3, small, what, value, unit, value * 1e3, small, factor);
+}
+
 static void doubt_bounds(const hf_requirement_verdict *v, int i, hf_messages *messages)
 {
     const hf_requirement_settings *r = &v->row;
-    const char *unit = hf_required_figure_unit[r->figure], *small = *unit == 'm' ? "mm" : *unit == 'k' ? "g" : "mN";
-    const char *key = NULL;
     const double bounds[2] = {r->at_least, r->at_most};
-    double nearest = INFINITY, bound = 0;
-    if ((strcmp(unit, "m") != 0 && strcmp(unit, "N") != 0 && strcmp(unit, "kg") != 0) || !(fabs(v->value) > 1e-9))
-        return;
-    for (int k = 0; k < 2; k++) {
-        double factor = bounds[k] > 0 ? bounds[k] / fabs(v->value) : (double)NAN;
-        if (!(fmax(factor, 1 / factor) < nearest)) continue;
-        nearest = fmax(factor, 1 / factor);
-        bound = bounds[k];
-        key = isfinite(r->within[k]) ? "within" : k ? "at_most" : "at_least";
-    }
-    if (!key || nearest < OTHER_UNIT) return;
-    hf_warning(messages,
-               "requirements.%d.%s: the bound %.6g %s (%.6g %s) and the value %.6g %s (%.6g %s) differ by a factor of "
-               "%.3g. Check the unit of the bound",
-               i, key, bound, unit, bound * 1e3, small, v->value, unit, v->value * 1e3, small, nearest);
+    bool is_most = false;
+    double factor = factor_of(r->figure, bounds, v->value, &is_most);
+    const char *key = isfinite(r->within[is_most]) ? ".within" : is_most ? ".at_most" : ".at_least";
+    doubt_bound(i, key, r->figure, bounds[is_most], "value", v->value, factor, messages);
+}
+
+/* A requirement at one point of a study, from the row of the ledger. */
+typedef struct {
+    hf_required_figure figure;
+    double value, bounds[2];
+} tried;
+
+/* Reads the requirements of a point. Returns their number. */
+static int read_tried(const hf_point *p, tried row[HF_REQUIREMENT_ROWS_MAX])
+{
+    static const char *const key[] = {"value_", "at_least_", "at_most_"};
+    char name[HF_OBJECTIVE_NAME_SIZE];
+    const char *names = p->field ? p->field[hf_ledger_names_field()] : "",
+               *text = p->field ? p->field[hf_ledger_n_column() + HF_LEDGER_LIST_REQUIREMENTS] : "";
+    double value;
+    int n = 0;
+    for (; names && *names && n < HF_REQUIREMENT_ROWS_MAX; names = strchr(names, ';'), names += names != NULL)
+        row[n++] = (tried){hf_ledger_figure(names), (double)NAN, {NAN, NAN}};
+    while (hf_ledger_next_value(HF_LEDGER_LIST_REQUIREMENTS, &text, name, &value))
+        for (int k = 0; k < 3; k++) {
+            size_t length = strlen(key[k]);
+            int i = strncmp(name, key[k], length) ? -1 : atoi(name + length);
+            if (i < 0 || i >= n) continue;
+            if (k == 0) row[i].value = value;
+            if (k > 0) row[i].bounds[k - 1] = value;
+        }
+    return n;
+}
+
+void hf_requirements_stage_doubt_points(const hf_points *points, hf_messages *messages)
+{
+    tried row[HF_REQUIREMENT_ROWS_MAX], nearest[HF_REQUIREMENT_ROWS_MAX];
+    double least[HF_REQUIREMENT_ROWS_MAX] = {0};
+    bool is_most = false;
+    for (int p = 0; p < points->n_point; p++)
+        for (int i = 0, n = read_tried(&points->point[p], row); i < n; i++) {
+            if (row[i].figure == HF_REQUIRED_N_FIGURE) continue;
+            double factor = factor_of(row[i].figure, row[i].bounds, row[i].value, &is_most);
+            if (factor == 0 || (least[i] > 0 && !(factor < least[i]))) continue;
+            least[i] = factor;
+            nearest[i] = row[i];
+            nearest[i].bounds[0] = row[i].bounds[is_most];
+        }
+    for (int i = 0; i < HF_REQUIREMENT_ROWS_MAX; i++)
+        if (least[i] > 0)
+            doubt_bound(i, "", nearest[i].figure, nearest[i].bounds[0], "nearest value of all points", nearest[i].value,
+                        least[i], messages);
 }
 
 hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)

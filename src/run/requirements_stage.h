@@ -4,6 +4,7 @@
 
 #include "built/required.h"
 #include "built/statistics.h"
+#include "store/ledger.h"
 #include <hifdm/problem.h>
 #include <hifdm/summary.h>
 
@@ -45,3 +46,7 @@ hf_status hf_requirements_stage_judge_design(const hf_requirements_stage *stage,
 hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *stage, const hf_montecarlo *montecarlo,
                                               const hf_statistics_rows *rows, hf_summary *summary,
                                               hf_messages *messages);
+
+/* Warns about bounds that are probably in another unit than their figure, once for all points that are done. The value
+ * of a warning is the one nearest to the bound. */
+void hf_requirements_stage_doubt_points(const hf_points *points, hf_messages *messages);

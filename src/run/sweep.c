@@ -14,6 +14,7 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "linalg/lapack.h"
+#include "run/requirements_stage.h"
 #include "search/parallel.h"
 #include "store/ledger.h"
 #include <hifdm/run.h>
@@ -36,6 +37,7 @@ typedef struct {
     pthread_mutex_t lock; /* protects count, messages and the observer */
     hf_sweep_count count;
     hf_messages *messages;
+    bool has_requirements;   /* of the points that were run */
     bool is_without_locks;   /* the file system has no locks, and a warning was given */
     _Atomic hf_status fatal; /* not HF_OK: fault of the machine, no point may begin; read without the lock */
 } sweep;
@@ -103,6 +105,7 @@ static void finish_point(sweep *w, int i, hf_status status, const hf_messages *s
     hf_status written = hf_ledger_write(&w->ledger, w->request->study, i, status, reason, summary, &trouble);
     pthread_mutex_lock(&w->lock);
     warn_of_files(w, said);
+    w->has_requirements |= summary->n_requirement > 0;
     w->count.n_done += status == HF_OK;
     w->count.n_failed += status != HF_OK;
     const char *words = hf_text_first_error(trouble.text, "cannot write");
@@ -242,6 +245,9 @@ hf_status hf_sweep_run(const hf_sweep_request *request, hf_sweep_count *count, h
         hf_points_free(&points);
     }
     if (status == HF_OK) status = run_points(&w);
+    if (w.has_requirements && hf_ledger_read(request->folder, request->study, &points, NULL) == HF_OK)
+        hf_requirements_stage_doubt_points(&points, messages);
+    if (w.has_requirements) hf_points_free(&points);
     hf_status closed = hf_ledger_close(&w.ledger, messages);
     if (closed != HF_OK) status = closed;
     hf_child_server_end();

@@ -412,6 +412,30 @@ START_TEST(a_bound_in_another_unit_is_doubted)
 }
 END_TEST
 
+/* A study warns once about each such bound, with the value that is nearest to it; a value that is not far off is enough
+ * to trust the bound. */
+START_TEST(a_study_doubts_a_bound_once)
+{
+    static const char said_once[] = "warning: requirements.1: the bound 0.02 N (20 mN) and the nearest value of all "
+                                    "points ";
+    file_with("c.yaml", formatted(BUILT_SCENE ROWS "  - {figure: psi, at_most: 1}\n"
+                                                   "  - {figure: tension, at_most: 0.02}\n"));
+    const char *study = file_with("s.yaml", "base: c.yaml\nsweep: {form.pretension_N: [20, 10, 40], files: all}\n");
+    HIFDM(0, "sweep", study, "--dir", temp("s.d"), "--quiet");
+    ERR(said_once);
+    ck_assert_int_eq(count_of(said.err, "warning: "), 1);
+    HIFDM(0, "merge", study, "--dir", temp("s.d"), "-o", temp("s.h5"), "--quiet");
+    ERR(said_once);
+    ck_assert_int_eq(count_of(said.err, "warning: "), 1);
+    const char *warned = file_with("err.txt", said.err);
+    EXPECT(temp("s.h5"), warned, "--",
+           "('value %.6g N' % a['points/requirements/value'][:, 1].min()).replace('value', 'points') in b.decode()");
+    HIFDM(0, "sweep", file_with("t.yaml", "base: c.yaml\nsweep: {requirements.1.at_most: [0.02, 20]}\n"), "--dir",
+          temp("t.d"), "--quiet");
+    ck_assert_str_eq(said.err, "");
+}
+END_TEST
+
 /* ---- load cases ---- */
 
 /* A net without a shape in a load case meets no row there, with and without a share. The other load cases have
@@ -648,6 +672,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_loop_test(tests, generations_rank_by_requirements_first, 0, 2);
     tcase_add_test(tests, struts_are_not_slack);
     tcase_add_test(tests, a_bound_in_another_unit_is_doubted);
+    tcase_add_test(tests, a_study_doubts_a_bound_once);
     tcase_add_test(tests, a_load_case_without_a_shape_fails_its_rows);
     tcase_add_loop_test(tests, threads_and_tasks_change_nothing, 0, 2);
     tcase_add_loop_test(tests, errors_of_load_cases_change_nothing_else, 0, 2);
