@@ -483,7 +483,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
     if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
     while (status == HF_OK && !p->is_outside && r->stop == HF_REFINE_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
-        if (!p->front && r->merit <= p->noise) { /* a step would only follow the rounding */
+        if (!p->front && r->merit <= p->rounding) { /* a step would only follow the rounding */
             r->stop = HF_REFINE_CONVERGED;
             HF_TRY(tell_watcher(p, r, max_iterations));
             break;

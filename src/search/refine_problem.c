@@ -167,21 +167,26 @@ void hf_refine_keep(hf_refine_problem *p)
         p->best[k] = hf_refine_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
 }
 
-/* Returns the part of the merit that computed shapes leave open. Forces out of balance by residual_tolerance of the
- * tensions act like an error of this part in each variable. Positions are rounded, too, and lengths in the merit with
- * them. A merit below the resulting change is zero as far as shapes are known. */
+/* Returns the part of the merit that the tolerance of the form-finding leaves open. Forces out of balance by
+ * residual_tolerance of the tensions act like an error of this part in each variable. A merit below the resulting
+ * change is zero as far as shapes are known. */
 static double find_noise(const hf_refine_problem *p)
 {
-    const hf_objectives *objectives = p->v.objectives;
-    size_t n_position = 3 * (size_t)p->v.model->n_node;
-    double square = 0, weight = objectives || p->front ? 0 : 1;
+    double square = 0;
     for (int k = 0; k < p->n; k++)
         square += p->gram[k * p->n + k] * p->unit[k] * p->unit[k];
-    for (int k = 0; !p->front && objectives && k < objectives->n_objective; k++)
+    return p->v.form->residual_tolerance * sqrt(square);
+}
+
+/* Returns the part of the merit that is rounding of positions. Only objectives that are lengths have one. */
+static double find_rounding(const hf_refine_problem *p)
+{
+    const hf_objectives *objectives = p->v.objectives;
+    double weight = objectives ? 0 : 1;
+    for (int k = 0; objectives && k < objectives->n_objective; k++)
         if (objectives->objective[k].settings.figure <= HF_FIGURE_FACETS)
             weight += objectives->objective[k].settings.weight;
-    return fmax(p->v.form->residual_tolerance * sqrt(square),
-                weight * POSITION_ROUNDING * hf_max_magnitude(n_position, p->w->position_m));
+    return weight * POSITION_ROUNDING * hf_max_magnitude(3 * (size_t)p->v.model->n_node, p->w->position_m);
 }
 
 /* Computes some rows of J'J. */
@@ -250,6 +255,7 @@ hf_status hf_refine_linearise(hf_refine_problem *p)
         p->largest_scale = fmax(p->largest_scale, p->scale[k]);
     }
     p->noise = find_noise(p);
+    p->rounding = find_rounding(p);
     if (p->front) linearise_front(p);
     if (hf_refine_n_constraint(p) > 0)
         HF_TRY(p->v.objectives->constraints->linearise(hf_residuals_point(&p->residuals)->constraints, p->n, spread,

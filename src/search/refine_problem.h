@@ -65,7 +65,8 @@ typedef struct {
     int settled_steps;                   /* steps since one promised much or changed the merit or an objective */
     double settled_merit, settled_objective[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that step */
     size_t n_state;
-    double noise; /* part of the merit that the tolerance of the form-finding leaves open */
+    double rounding; /* part of the merit that is rounding of positions */
+    double noise;    /* part of the merit that the tolerance of the form-finding leaves open */
     void *block;
 } hf_refine_problem;
 
