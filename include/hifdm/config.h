@@ -33,7 +33,7 @@ typedef struct {
     char *overrides;                            /* overrides, one per line; "": there are none */
     char sha256[65];                            /* hexadecimal digest of text and overrides */
     char title[256];                            /* title of the case */
-    char *where_given;                          /* internal: locations of the keys for hf_config_location */
+    char *where_given;                          /* internal: locations of the keys, and the keys with faults */
     bool has_import, has_optimize, has_surface; /* which sections the case has */
     bool has_tolerance;                         /* the case has a section tolerance */
     bool has_sweep; /* the case has a section sweep; its lines are not in `text`, and study.h reads its axes */

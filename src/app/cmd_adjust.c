@@ -460,7 +460,6 @@ static hf_status execute(job *j, const hf_options *o, hf_messages *messages)
     const hf_report_part part = {"adjust", write_part, j, &files};
     HF_TRY(hf_adjust_case_load(o->file, o->set, o->n_set, o->load_case, j, messages));
     HF_TRY(hf_built_design_check(o, &j->problem.settings, messages));
-    HF_TRY(hf_tolerance_stage_check(&j->problem, false, messages));
     HF_TRY(check_outputs(j, o, messages));
     HF_TRY(hf_adjust_case_read(o->measured, o->threads, j, messages));
     HF_TRY(hf_built_design_make(o, &j->problem, &j->built, messages));

@@ -24,6 +24,7 @@ typedef struct {
     hf_config_faults faults;
     yaml_mark_t cut[2]; /* start and end of the sweep section, if there is one */
     yaml_document_t *document;
+    int n_noted;   /* faults whose key was noted as not read */
     bool walked;   /* true: the file was readable YAML, so missing keys can be reported */
     bool is_study; /* true: the file has the key `base`; it is a study, and no key of a case is missing */
     bool no_memory;
@@ -32,6 +33,13 @@ typedef struct {
 static void complain(loader *l, yaml_mark_t mark, const char *path, const char *what, const char *detail)
 {
     hf_config_fault_at(&l->faults, mark.line, mark.column, path, what, detail);
+}
+
+/* Notes that the faults since the last call are of this key. */
+static void note_faults(loader *l, const char *path)
+{
+    if (l->faults.n > l->n_noted) hf_config_note_unread(&l->faults, path);
+    l->n_noted = l->faults.n;
 }
 
 /* ---- looking up keys ---- */
@@ -92,7 +100,7 @@ static const char *key_elsewhere(const char *key)
 static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, const char *key)
 {
     const char *near = nearest_key(prefix, key), *meant = hf_config_suggestion(prefix, key);
-    char detail[2 * HF_KEY_SIZE] = "";
+    char detail[2 * HF_KEY_SIZE] = "", meant_path[HF_KEY_SIZE];
     if (!*prefix && !strcmp(key, "base")) {
         l->is_study = true;
         snprintf(detail, sizeof detail, "; a file with a base is a study, for 'hifdm sweep'");
@@ -106,6 +114,8 @@ static void complain_unknown(loader *l, yaml_mark_t mark, const char *prefix, co
         snprintf(detail, sizeof detail, "; did you mean '%s'?", key_elsewhere(key));
     }
     complain(l, mark, key, "unknown key", *detail ? detail : " (hifdm schema lists all keys)");
+    snprintf(meant_path, sizeof meant_path, "%s%s%s", prefix, *prefix && near ? "." : "", near ? near : "");
+    note_faults(l, *meant_path ? meant_path : key_elsewhere(key) ? key_elsewhere(key) : key);
 }
 
 /* Reports a --set path in a list that is no key of a row: the row number is wrong, or it is a whole row. Returns false
@@ -232,6 +242,7 @@ static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
         *hf_config_where(&l->faults, key.i_location) = '\0';
         if (row->type != YAML_MAPPING_NODE) {
             complain(l, row->start_mark, key.path, "must be a row {key: value, ...}", "");
+            note_faults(l, key.path);
         } else {
             set_location(l, row, key.i_location);
             walk(l, row, key.path);
@@ -261,6 +272,7 @@ static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, cons
     } else {
         walk(l, value, path);
     }
+    note_faults(l, path);
 }
 
 static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
@@ -271,6 +283,7 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
         const yaml_node_t *value = yaml_document_get_node(l->document, p->value);
         if (key->type != YAML_SCALAR_NODE) {
             complain(l, key->start_mark, *prefix ? prefix : "case", "a key must be a plain word", "");
+            note_faults(l, prefix);
             continue;
         }
         const char *word = hf_config_text(key);
@@ -279,6 +292,7 @@ static void walk(loader *l, const yaml_node_t *mapping, const char *prefix)
             char line[48];
             snprintf(line, sizeof line, "%zu", earlier->start_mark.line + 1);
             complain(l, key->start_mark, word, "this key stands here already, on line ", line);
+            note_faults(l, prefix);
         } else {
             take(l, value, key->start_mark, prefix, word);
         }
@@ -422,6 +436,7 @@ static void apply_override(loader *l, const char *argument)
         fault = "must be on one line";
     if (fault) {
         l->faults.failed = true;
+        hf_config_note_unread(&l->faults, "");
         hf_error(l->faults.messages, HF_BAD_CASE, "--set %s: %s", argument, fault);
         return;
     }
@@ -429,6 +444,7 @@ static void apply_override(loader *l, const char *argument)
     l->faults.origin = argument;
     l->faults.is_override = true;
     with_document(l, equals + 1, strlen(equals + 1), use_override, path);
+    note_faults(l, path);
     l->faults.is_override = false;
     l->faults.origin = l->c->path;
 }
@@ -507,7 +523,8 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
         return hf_error(messages, HF_BAD_CASE, "%s:%d:1: the YAML text has more than %d nested brackets", path,
                         hf_text_too_deep(settings->text), HF_TEXT_NESTING_MAX);
     loader l = {.c = settings, .faults = {.messages = messages, .path = path, .origin = path}};
-    l.faults.where_given = settings->where_given = calloc((size_t)hf_key_n_location(), HF_CONFIG_WHERE_SIZE);
+    l.faults.where_given = settings->where_given =
+        calloc((size_t)hf_key_n_location() * HF_CONFIG_WHERE_SIZE + HF_CONFIG_FAULTY_SIZE, 1);
     if (!l.faults.where_given) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     hf_key key;
     for (int i = 0; i < hf_n_field; i++) {
@@ -521,6 +538,8 @@ static hf_status parse(hf_case *settings, const char *const *overrides, int n_ov
     if (l.walked && !l.is_study && !l.no_memory) {
         hf_config_rename_require(settings, &l.faults);
         hf_config_check(settings, &l.faults);
+    } else {
+        hf_config_note_unread(&l.faults, "");
     }
     hf_config_complete(settings);
     cut_sweep(&l);

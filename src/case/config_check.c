@@ -43,6 +43,13 @@ hf_surface_settings hf_config_known_surface(const hf_case *c, const char **key)
     return known;
 }
 
+/* Reports a fault of a key on which other checks depend. */
+static void refuse(hf_config_faults *f, const char *path, const char *what)
+{
+    hf_config_fault_of(f, path, what);
+    hf_config_note_unread(f, path);
+}
+
 /* Reports settings from which a generator cannot make a net, as a fault of one of its keys. */
 static void check_generators(const hf_case *c, hf_config_faults *f)
 {
@@ -51,7 +58,7 @@ static void check_generators(const hf_case *c, hf_config_faults *f)
 #define CHECK(section, type, KEYS)                                                                                     \
     if (c->has_##section && (key = hf_scene_##section##_fault(&c->section, what, sizeof what)) != NULL) {              \
         snprintf(path, sizeof path, "scene.%s.%s", #section, key);                                                     \
-        hf_config_fault_of(f, path, what);                                                                             \
+        refuse(f, path, what);                                                                                         \
     }
     HF_GENERATORS(CHECK)
 #undef CHECK
@@ -100,9 +107,10 @@ double hf_config_highest_Hz(const hf_case *c)
 static void check_frequencies(const hf_double_list *frequency_Hz, hf_config_faults *f)
 {
     char what[HF_CONFIG_WHAT_SIZE];
-    for (int i = 0; i < frequency_Hz->n && !f->failed; i++)
-        if (hf_config_frequency_fault(frequency_Hz->value[i], what))
-            hf_config_fault_of(f, "surface.frequencies_Hz", what);
+    int i = 0;
+    while (i < frequency_Hz->n && !hf_config_frequency_fault(frequency_Hz->value[i], what))
+        i++;
+    if (i < frequency_Hz->n) hf_config_fault_of(f, "surface.frequencies_Hz", what);
 }
 
 static void check_pattern(const hf_case *c, hf_config_faults *f)
@@ -200,7 +208,7 @@ static void check_rows_are_whole(const hf_case *c, hf_config_faults *f)
             for (int i = 0; i < list->n_field; i++) {
                 const hf_key key = hf_key_of_row(list, row, i);
                 if (!key.field->default_value && !*hf_config_where(f, key.i_location))
-                    hf_config_fault_of(f, key.path, "is missing and has no default");
+                    refuse(f, key.path, "is missing and has no default");
             }
         }
 }
@@ -340,23 +348,26 @@ void hf_config_check(const hf_case *c, hf_config_faults *f)
     const hf_optimize_settings *o = &c->optimize;
     const char *key;
     char what[HF_CONFIG_WHAT_SIZE];
-    if (!one_section_makes_the_net(c, what)) hf_config_fault_of(f, "scene", what);
+    if (!one_section_makes_the_net(c, what)) refuse(f, "scene", what);
     for (int i = 0; i < hf_n_field; i++)
         if (!hf_field_table[i].default_value && has_section_of(c, hf_field_table[i].path) && !*hf_config_where(f, i))
-            hf_config_fault_of(f, hf_field_table[i].path, "is missing and has no default");
+            refuse(f, hf_field_table[i].path, "is missing and has no default");
     check_rows_are_whole(c, f);
-    if (c->has_surface && c->surface.focal_length_m == 0 && hf_config_known_surface(c, &key).focal_length_m == 0 &&
-        !f->failed)
+    bool has_scene = hf_config_is_read(c, "scene"), has_surface = c->has_surface && hf_config_is_read(c, "surface");
+    if (has_scene && has_surface && c->surface.focal_length_m == 0 &&
+        hf_config_known_surface(c, &key).focal_length_m == 0)
         hf_config_fault_of(f, "surface.focal_length_m",
                            c->has_import ? "is missing: an imported net does not tell its surface"
                                          : "is missing: this net does not tell its surface");
-    if (c->has_surface && !f->failed) check_frequencies(&c->surface.frequencies_Hz, f);
-    if (c->surface.has_pattern && !f->failed) check_pattern(c, f);
-    if (!f->failed) check_generators(c, f);
-    if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && !f->failed) check_truss(c, f);
-    if (!f->failed) hf_config_check_built(c, f);
-    if (!f->failed) hf_config_check_requirements(c, f);
-    if (!c->has_optimize || f->failed) return; /* rejected values are not compared */
+    if (has_surface) check_frequencies(&c->surface.frequencies_Hz, f);
+    if (c->surface.has_pattern && hf_config_is_read(c, "surface")) check_pattern(c, f);
+    if (has_scene) check_generators(c, f);
+    if ((c->has_truss || c->has_truss_import || c->has_truss_ring) && hf_config_is_read(c, "truss") &&
+        hf_config_is_read(c, "scene"))
+        check_truss(c, f);
+    hf_config_check_built(c, f);
+    hf_config_check_requirements(c, f);
+    if (!c->has_optimize || !hf_config_is_read(c, "optimize")) return; /* rejected values are not compared */
     if (o->min_tension_N >= o->max_tension_N)
         hf_config_fault_of(f, "optimize.min_tension_N", "must be below optimize.max_tension_N");
     if (o->refine == HF_REFINE_TRUE && o->rule == HF_RULE_SEEDED)

@@ -31,10 +31,12 @@ static void check_adjust(const hf_adjust_settings *a, hf_config_faults *f)
         hf_config_fault_of(f, "adjust.aim", "design goes with adjust.figure: psi alone; the others are of the surface");
 }
 
-static void check_cables(const hf_built_settings *b, hf_config_faults *f)
+static void check_cables(const hf_case *c, hf_config_faults *f)
 {
+    const hf_built_settings *b = &c->built;
     for (int i = 0; i < b->n_cable; i++) {
         const hf_cable_settings *row = &b->cable[i];
+        if (!hf_config_is_read(c, "cables.%d", i)) continue;
         hf_config_check_set(f, "cables", i, row->set);
         if (isnan(row->expansion_per_K) && isnan(row->mass_kg_per_m))
             hf_config_fault_in_row(f, "cables", i, "set",
@@ -93,13 +95,14 @@ static void check_company(const hf_load_case_settings *s, int row, hf_config_fau
 }
 
 /* Reports a quantity that two rows of the same load case set. Forces and displacements add up instead. */
-static void check_twice(const hf_built_settings *b, int row, hf_config_faults *f)
+static void check_twice(const hf_case *c, int row, hf_config_faults *f)
 {
+    const hf_built_settings *b = &c->built;
     const hf_load_case_settings *s = &b->load_case[row];
     char what[96];
     for (int i = 0; i < row; i++) {
         const hf_load_case_settings *before = &b->load_case[i];
-        if (strcmp(before->name, s->name) != 0) continue;
+        if (strcmp(before->name, s->name) != 0 || !hf_config_is_read(c, "%s.%d", load_case_list, i)) continue;
         snprintf(what, sizeof what, "row %d has it for this load case already", i);
         if (!isnan(s->gravity_m_per_s2) && !isnan(before->gravity_m_per_s2))
             hf_config_fault_in_row(f, load_case_list, row, "gravity_m_per_s2", what);
@@ -109,8 +112,9 @@ static void check_twice(const hf_built_settings *b, int row, hf_config_faults *f
     }
 }
 
-static void check_load_cases(const hf_built_settings *b, hf_config_faults *f)
+static void check_load_cases(const hf_case *c, hf_config_faults *f)
 {
+    const hf_built_settings *b = &c->built;
     int n_name = 0;
     for (int i = 0; i < b->n_load_case; i++) {
         int same = 0;
@@ -119,10 +123,11 @@ static void check_load_cases(const hf_built_settings *b, hf_config_faults *f)
         n_name += same == i;
         if (n_name > HF_LOAD_CASES_MAX && same == i)
             hf_config_fault_in_row(f, load_case_list, i, "name", "there are more than 16 load cases");
+        if (!hf_config_is_read(c, "%s.%d", load_case_list, i)) continue;
         check_name(&b->load_case[i], i, f);
         hf_config_check_set(f, load_case_list, i, b->load_case[i].set);
         check_company(&b->load_case[i], i, f);
-        check_twice(b, i, f);
+        check_twice(c, i, f);
     }
 }
 
@@ -130,6 +135,8 @@ static void check_load_cases(const hf_built_settings *b, hf_config_faults *f)
 static void check_expansions(const hf_case *c, hf_config_faults *f)
 {
     const hf_built_settings *b = &c->built;
+    if (!hf_config_is_read(c, "cables") || !hf_config_is_read(c, "load_cases") || !hf_config_is_read(c, "tolerance"))
+        return;
     if (c->has_tolerance && hf_tolerance_is_warm(&c->tolerance)) return;
     for (int i = 0; i < b->n_load_case; i++)
         if (has_temperature(&b->load_case[i])) return;
@@ -145,7 +152,8 @@ static void check_truss_heat(const hf_case *c, hf_config_faults *f)
 {
     static const char list[] = "tolerance.truss";
     for (int i = 0; i < c->tolerance.n_truss; i++) {
-        if (!c->has_truss) hf_config_fault_in_row(f, list, i, "part", "the case has no truss");
+        if (!c->has_truss && hf_config_is_read(c, "truss"))
+            hf_config_fault_in_row(f, list, i, "part", "the case has no truss");
         for (int k = 0; k < i; k++)
             if (c->tolerance.truss[k].part == c->tolerance.truss[i].part)
                 hf_config_fault_in_row(f, list, i, "part", "has a row already");
@@ -161,6 +169,7 @@ static void check_load_errors(const hf_case *c, hf_config_faults *f)
     } of[] = {{"tolerance.sigma_load_case_temperature_K", c->tolerance.sigma_load_case_temperature_K},
               {"tolerance.sigma_gravity_ratio", c->tolerance.sigma_gravity_ratio},
               {"tolerance.sigma_force_ratio", c->tolerance.sigma_force_ratio}};
+    if (!hf_config_is_read(c, "requirements")) return;
     for (int i = 0; i < c->n_requirement; i++)
         if (!isnan(c->requirement[i].share) && strcmp(c->requirement[i].load_case, "nominal") != 0) return;
     for (size_t k = 0; k < sizeof of / sizeof *of; k++)
@@ -182,14 +191,14 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
         t->n_truss == 0)
         hf_config_fault_of(f, "tolerance.sigma_cut_m",
                            "must be above 0, or another sigma: without errors all is nominal");
-    if (hf_tolerance_is_warm(t) && !knows_expansion)
+    if (hf_tolerance_is_warm(t) && !knows_expansion && hf_config_is_read(c, "cables"))
         hf_config_fault_of(
             f, t->sigma_temperature_K > 0 ? "tolerance.sigma_temperature_K" : "tolerance.sigma_load_case_temperature_K",
             "needs expansion_per_K in a row of `cables`");
     bool has_share = false;
     for (int i = 0; i < c->n_requirement; i++)
         has_share |= !isnan(c->requirement[i].share);
-    if (t->find_scale && !has_share)
+    if (t->find_scale && !has_share && t->n_require == 0 && hf_config_is_read(c, "requirements"))
         hf_config_fault_of(f, "tolerance.find_scale", "needs rows of `requirements` with a share");
     if (t->batch > 0 && t->sigma_cut_ratio + t->sigma_EA_ratio == 0)
         hf_config_fault_of(f, "tolerance.batch", "is about sigma_cut_ratio and sigma_EA_ratio; give one of them");
@@ -197,11 +206,11 @@ static void check_tolerance(const hf_case *c, hf_config_faults *f)
 
 void hf_config_check_built(const hf_case *c, hf_config_faults *f)
 {
-    if (c->has_adjust) check_adjust(&c->adjust, f);
-    check_cables(&c->built, f);
-    check_load_cases(&c->built, f);
+    if (c->has_adjust && hf_config_is_read(c, "adjust")) check_adjust(&c->adjust, f);
+    check_cables(c, f);
+    check_load_cases(c, f);
     check_expansions(c, f);
-    if (c->has_tolerance) check_tolerance(c, f);
+    if (c->has_tolerance && hf_config_is_read(c, "tolerance")) check_tolerance(c, f);
 }
 
 /* ---- objectives over load cases and samples ---- */
@@ -219,6 +228,7 @@ static void check_load_case(const hf_case *c, const char *list, int row, const h
     }
     if (g->over != HF_OVER_DESIGN)
         hf_config_fault_in_row(f, list, row, "load_case", "does not go with over: samples; remove one of them");
+    if (!hf_config_is_read(c, load_case_list)) return;
     if (b->n_load_case == 0)
         snprintf(what, sizeof what, "needs load cases of the as-built net; add rows to `load_cases`");
     else if (is_known || hf_objective_takes_load_cases(g))
@@ -268,7 +278,7 @@ void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, c
     for (int i = 0; i < n_objective; i++) {
         const hf_objective_settings *g = &objective[i];
         if (*g->load_case) check_load_case(c, list, i, g, f);
-        if (g->over == HF_OVER_SAMPLES && !c->has_tolerance)
+        if (g->over == HF_OVER_SAMPLES && !c->has_tolerance && hf_config_is_read(c, "tolerance"))
             hf_config_fault_in_row(f, list, i, "over",
                                    "samples needs a section tolerance, which says how large errors are");
         if (g->over == HF_OVER_DESIGN && !hf_objective_takes_load_cases(g) &&

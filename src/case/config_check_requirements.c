@@ -48,7 +48,7 @@ static void check_load_case(const hf_case *c, int i, const hf_requirement_settin
         name[2 + k] = b->load_case[k].name;
         is_known |= !strcmp(name[2 + k], r->load_case);
     }
-    if (is_known) return;
+    if (is_known || !hf_config_is_read(c, "load_cases")) return;
     if (b->n_load_case == 0)
         snprintf(what, sizeof what, "needs load cases; add rows to `load_cases`, or remove this key");
     else if ((near = hf_text_nearest(r->load_case, name, 2 + b->n_load_case)))
@@ -67,14 +67,13 @@ static void check_share(const hf_case *c, int i, const hf_requirement_settings *
     const double tail = 0.025;
     char what[160];
     if (isnan(r->share)) return;
-    if (!c->has_tolerance) {
-        hf_config_fault_in_row(f, list, i, "share", "needs a section tolerance, which defines the as-built samples");
-        return;
-    }
     double needed = ceil(log(tail) / log(r->share));
     if (r->share == 1)
         hf_config_fault_in_row(f, list, i, "share", "cannot be 1: no number of samples shows that all nets pass");
-    else if (needed > c->tolerance.samples && hf_config_is_given_in_row(f, list, i, "share")) {
+    if (!hf_config_is_read(c, "tolerance.samples")) return;
+    if (!c->has_tolerance)
+        hf_config_fault_in_row(f, list, i, "share", "needs a section tolerance, which defines the as-built samples");
+    else if (r->share < 1 && needed > c->tolerance.samples && hf_config_is_given_in_row(f, list, i, "share")) {
         snprintf(what, sizeof what, "cannot be decided by %d samples; set tolerance.samples to at least %.0f",
                  c->tolerance.samples, needed);
         hf_config_fault_in_row(f, list, i, "share", what);
@@ -120,6 +119,7 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
              is_same_case = !strcmp(r->load_case, q->load_case),
              overlaps = is_same_case || !strcmp(r->load_case, "all") || !strcmp(q->load_case, "all");
         bounds_of(q, other);
+        if (!hf_config_is_read(c, "%s.%d", list, k) || mine[0] > mine[1] || other[0] > other[1]) continue;
         bool is_same = is_same_quantity(c, r, q);
         if (!overlaps || !(is_same || shares_cables(r, q))) continue;
         if (is_same && is_same_case && is_same_share &&
@@ -140,7 +140,7 @@ static void check_radio(const hf_case *c, int i, const hf_requirement_settings *
     const char *what = hf_config_frequency_fault(r->frequency_Hz, text);
     if (what) hf_config_fault_in_row(f, list, i, "frequency_Hz", what);
     if (!hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO)) return;
-    if (c->has_surface && isnan(frequency_of(c, r)))
+    if (c->has_surface && isnan(frequency_of(c, r)) && hf_config_is_read(c, "surface.frequencies_Hz"))
         hf_config_fault_in_row(f, list, i, "figure",
                                "needs a frequency; add frequency_Hz to this row, or surface.frequencies_Hz");
     if (r->figure == HF_REQUIRED_POINTING && r->feed == HF_REFOCUSED && hf_config_is_given_in_row(f, list, i, "feed"))
@@ -150,10 +150,11 @@ static void check_radio(const hf_case *c, int i, const hf_requirement_settings *
 
 static void check_needs(const hf_case *c, int i, const hf_requirement_settings *r, hf_config_faults *f)
 {
-    if (hf_required_is_of(r->figure, HF_REQUIRED_OF_FEED) && !c->has_surface)
+    if (hf_required_is_of(r->figure, HF_REQUIRED_OF_FEED) && !c->has_surface && hf_config_is_read(c, "surface"))
         hf_config_fault_in_row(f, list, i, "figure", "is not measured; add a section surface");
     check_radio(c, i, r, f);
-    if (r->figure == HF_REQUIRED_DEFLECTION && !(c->has_truss || c->has_truss_import || c->has_truss_ring))
+    if (r->figure == HF_REQUIRED_DEFLECTION && !(c->has_truss || c->has_truss_import || c->has_truss_ring) &&
+        hf_config_is_read(c, "truss"))
         hf_config_fault_in_row(f, list, i, "figure", "needs a section truss");
     if (r->figure == HF_REQUIRED_MASS && (strcmp(r->load_case, "nominal") != 0 || !isnan(r->share)))
         hf_config_fault_in_row(f, list, i, isnan(r->share) ? "load_case" : "share",
@@ -164,6 +165,7 @@ void hf_config_check_requirements(const hf_case *c, hf_config_faults *f)
 {
     for (int i = 0; i < c->n_requirement; i++) {
         const hf_requirement_settings *r = &c->requirement[i];
+        if (!hf_config_is_read(c, "%s.%d", list, i)) continue;
         hf_config_check_use(f, list, i, "set", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_SET);
         hf_config_check_use(f, list, i, "feed", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_FEED);
         hf_config_check_use(f, list, i, "frequency_Hz", (int)r->figure, hf_required_figure_word, HF_REQUIRED_OF_RADIO);

@@ -4,6 +4,7 @@
 #include "case/config_key.h"
 
 #define HF_CONFIG_WHERE_SIZE 64
+#define HF_CONFIG_FAULTY_SIZE 4096 /* bytes behind the locations of where_given, for the keys with faults */
 
 typedef struct {
     hf_messages *messages;
@@ -23,6 +24,15 @@ void hf_config_fault_at(hf_config_faults *faults, size_t line, size_t column, co
 /* Reports a fault of several keys or of a missing key. The message contains the location of the key if the
  * case contains it. */
 void hf_config_fault_of(hf_config_faults *faults, const char *path, const char *what);
+
+/* Notes that the values of a key, a row or a section cannot be used, because they are missing or were rejected. */
+void hf_config_note_unread(hf_config_faults *faults, const char *path);
+
+/* Returns true if all values of this key, row or section were read, so that they can be compared with others. */
+bool hf_config_is_read(const hf_case *settings, const char *path_format, ...) HF_PRINTF(2, 3);
+
+/* Returns true if no fault of this key, row or section was reported. */
+bool hf_config_is_sound(const hf_case *settings, const char *path_format, ...) HF_PRINTF(2, 3);
 
 /* Reports a fault of a key in a row, such as key "set" of row 0 of the list "optimize.objective". */
 void hf_config_fault_in_row(hf_config_faults *faults, const char *list, int row, const char *key, const char *what);

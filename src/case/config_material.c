@@ -13,7 +13,9 @@ static hf_status set_cables(const hf_case *c, const hf_scene *s, int *cable, hf_
     for (int i = 0; i < c->built.n_cable; i++) {
         const hf_cable_settings *row = &c->built.cable[i];
         char where[HF_LOCATION_SIZE];
-        int n = hf_cable_pick_some(s, row->set, hf_config_place(c, where, "cables.%d.set", i), cable, messages);
+        hf_config_place(c, where, "cables.%d.set", i);
+        /* other faults of a set were reported before */
+        int n = hf_config_is_sound(c, "cables.%d.set", i) ? hf_cable_pick_some(s, row->set, where, cable, messages) : 0;
         if (n == 0) status = HF_BAD_CASE;
         for (int k = 0; k < n; k++) {
             if (!isnan(row->expansion_per_K)) t->expansion_per_K[cable[k]] = row->expansion_per_K;

@@ -12,7 +12,6 @@
 #include "run/feasible.h"
 #include "run/load_case_stage.h"
 #include "run/problem_parts.h"
-#include "run/requirements_stage.h"
 #include "search/chord.h"
 #include "search/refine.h"
 #include "search/swarm.h"
@@ -338,9 +337,6 @@ hf_status hf_check_load(const hf_check_request *q, hf_check *c, hf_messages *mes
     c->form_s = c->load_cases_s = c->design_s = c->step_s = (double)NAN;
     double begin_s = hf_clock_thread_cpu_s();
     HF_TRY(hf_problem_load(q->path, NULL, q->set, q->n_set, NULL, p, messages));
-    hf_status checked = hf_requirements_stage_check(p, messages); /* lists all faults */
-    HF_TRY(hf_tolerance_stage_check(p, false, messages));
-    HF_TRY(checked);
     HF_TRY(hf_problem_allocate(p, messages));
     c->at_most_s = hf_clock_thread_cpu_s() - begin_s;
     const hf_evaluator evaluator = hf_problem_evaluator(p);

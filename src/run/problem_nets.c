@@ -47,7 +47,6 @@ static hf_status make_nets(hf_problem *p, bool has_load_cases, int n_sample, hf_
         q->tolerance.seed ^= SEED_OF_SEARCH;
         tolerance = &q->tolerance;
     }
-    if (n_sample > 0) HF_TRY(hf_tolerance_stage_check(p, false, messages));
     if (n_sample > 0 && is_warm) HF_TRY(hf_config_material(c, &p->scene, &q->material, messages));
     hf_built_heat heat = {is_warm ? q->material.expansion_per_K : NULL,
                           c->tolerance.n_truss ? q->truss_move_m_per_K : NULL};

@@ -19,6 +19,7 @@
 #include "net/variables.h"
 #include "run/problem_nets.h"
 #include "run/requirements_stage.h"
+#include "run/tolerance_stage.h"
 #include "search/refine.h"
 #include "surface/facet_mesh.h"
 #include "solve/limits.h"
@@ -125,19 +126,26 @@ static void find_key_place(const void *settings, const char *key, char *text, si
     hf_config_location(settings, key, text, size);
 }
 
-/* Creates limits and objectives from their rows, and reports the faults of both. */
-static hf_status judge_by_rows(hf_problem *p, hf_messages *messages)
+/* Keeps the first status that is not HF_OK. Returns true if this one is HF_OK. */
+static bool keep(hf_status status, hf_status *first)
+{
+    if (*first == HF_OK) *first = status;
+    return status == HF_OK;
+}
+
+/* Creates limits and objectives from their rows, and reports the faults of both. The as-built nets are made only if the
+ * case has had no fault before. */
+static void judge_by_rows(hf_problem *p, hf_status *first, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
-    hf_status limits = hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), objectives = HF_OK;
-    bool has_objectives = o->n_term || o->n_front || p->settings.n_requirement;
-    if (has_objectives && objectives == HF_OK) objectives = hf_problem_nets_make(p, messages);
-    has_objectives = o->n_term || o->n_front || hf_problem_constraints_of(p);
-    if (has_objectives && objectives == HF_OK)
-        objectives = hf_objectives_create(&p->scene, &p->model, o, &p->surface, &p->facets, hf_problem_nets_of(p),
-                                          &p->objectives, messages);
+    keep(hf_limits_create(&p->scene, &p->model, o, &p->limits, messages), first);
+    if (*first == HF_OK && (o->n_term || o->n_front || p->settings.n_requirement))
+        keep(hf_problem_nets_make(p, messages), first);
+    if (o->n_term || o->n_front || hf_problem_constraints_of(p))
+        keep(hf_objectives_create(&p->scene, &p->model, o, &p->surface, &p->facets, hf_problem_nets_of(p),
+                                  &p->objectives, messages),
+             first);
     p->objectives.constraints = hf_problem_constraints_of(p);
-    return limits != HF_OK ? limits : objectives;
 }
 
 static hf_status make_scene(const hf_problem_source *source, hf_problem *p, hf_messages *messages)
@@ -170,38 +178,54 @@ hf_status hf_problem_hold_at(const hf_problem *p, const hf_problem_source *sourc
     return status;
 }
 
+/* Makes all that follows from the case and its scene. *first is the status of the case. A part whose keys have faults,
+ * or that needs a part with faults, is not made; the faults of all others are reported. */
+static void make_parts(hf_problem *p, const volatile sig_atomic_t *stop, hf_material *material, hf_status *first,
+                       hf_messages *messages)
+{
+    const hf_case *c = &p->settings;
+    bool has_surface =
+        hf_config_is_sound(c, "surface") && keep(hf_config_surface(c, &p->scene, &p->surface, messages), first);
+    if (!has_surface) p->surface.focal_length_m = 0; /* other parts do without */
+    if (has_surface && c->has_surface) keep(find_facets(p, messages), first);
+    bool has_material = hf_config_is_read(c, "cables") && hf_config_is_sound(c, "nodes") &&
+                        keep(hf_config_material(c, &p->scene, material, messages), first);
+    keep(hf_requirements_stage_check(p, has_material ? material : NULL, messages), first);
+    bool has_model = hf_config_is_sound(c, "form") &&
+                     (c->form.prestress != HF_PRESTRESS_EXACT ||
+                      keep(hf_prestress_hold(&p->scene, &c->form, stop, messages), first)) &&
+                     keep(hf_model_build(&p->scene, &c->form, &p->model, messages), first);
+    bool optimizes = c->has_optimize && has_model && has_surface && hf_config_is_sound(c, "optimize");
+    bool has_variables =
+        optimizes && keep(hf_variables_apply(&p->scene, &c->optimize, &p->surface, &p->model, messages), first);
+    bool has_truss = !c->has_truss || (hf_config_is_sound(c, "truss") &&
+                                       keep(hf_config_carrier(c, &p->scene, &p->carrier, messages), first));
+    if (c->has_truss && has_truss && has_model) {
+        const hf_carrier *t = &p->carrier;
+        has_truss =
+            keep(hf_model_attach(&p->model, t->n_attachment, t->scene_node, t->flexibility_m_per_N, messages), first);
+        if (c->has_optimize) hf_model_want_newton(&p->model);
+    }
+    const hf_truss *truss = c->has_truss ? &p->carrier.truss : NULL;
+    bool has_built = has_material && has_truss && hf_config_is_sound(c, "load_cases") &&
+                     keep(hf_config_load_cases(c, &p->scene, truss, &p->load_cases, messages), first);
+    if (c->has_tolerance && has_built && has_model && hf_config_is_sound(c, "tolerance"))
+        keep(hf_tolerance_stage_check(p, material, messages), first);
+    if (optimizes && has_truss) judge_by_rows(p, first, messages);
+    if (has_variables && has_truss)
+        keep(hf_symmetry_apply(&p->scene, &c->optimize, &p->model, &p->planes, messages), first);
+}
+
 static hf_status load_parts(const char *path, const hf_problem_source *source, const char *const *set, int n_set,
                             const volatile sig_atomic_t *stop, hf_problem *p, hf_messages *messages)
 {
-    if (source)
-        HF_TRY(hf_config_parse(path, source->text, set, n_set, &p->settings, messages));
-    else
-        HF_TRY(hf_config_load(path, set, n_set, &p->settings, messages));
-    HF_TRY(make_scene(source, p, messages));
-    HF_TRY(hf_config_surface(&p->settings, &p->scene, &p->surface, messages));
-    if (p->settings.has_surface) HF_TRY(find_facets(p, messages));
-    if (p->settings.form.prestress == HF_PRESTRESS_EXACT)
-        HF_TRY(hf_prestress_hold(&p->scene, &p->settings.form, stop, messages));
-    HF_TRY(hf_model_build(&p->scene, &p->settings.form, &p->model, messages));
-    hf_status rows = HF_OK;
-    if (p->settings.has_optimize)
-        rows = hf_variables_apply(&p->scene, &p->settings.optimize, &p->surface, &p->model, messages);
-    if (rows != HF_OK && rows != HF_BAD_CASE) return rows;
-    if (p->settings.has_truss) {
-        const hf_carrier *c = &p->carrier;
-        HF_TRY(hf_config_carrier(&p->settings, &p->scene, &p->carrier, messages));
-        HF_TRY(hf_model_attach(&p->model, c->n_attachment, c->scene_node, c->flexibility_m_per_N, messages));
-        if (p->settings.has_optimize) hf_model_want_newton(&p->model);
-    }
-    if (p->settings.built.n_load_case) {
-        const hf_truss *truss = p->settings.has_truss ? &p->carrier.truss : NULL;
-        HF_TRY(hf_config_load_cases(&p->settings, &p->scene, truss, &p->load_cases, messages));
-    }
-    HF_TRY(hf_requirements_stage_check(p, messages));
-    if (!p->settings.has_optimize) return HF_OK;
-    hf_status aims = judge_by_rows(p, messages);
-    HF_TRY(rows != HF_OK ? rows : aims);
-    return hf_symmetry_apply(&p->scene, &p->settings.optimize, &p->model, &p->planes, messages);
+    hf_material material = {0};
+    hf_status first = source ? hf_config_parse(path, source->text, set, n_set, &p->settings, messages)
+                             : hf_config_load(path, set, n_set, &p->settings, messages);
+    if (first != HF_OK && !(first == HF_BAD_CASE && hf_config_is_sound(&p->settings, "scene"))) return first;
+    if (keep(make_scene(source, p, messages), &first)) make_parts(p, stop, &material, &first, messages);
+    hf_material_free(&material);
+    return first;
 }
 
 hf_status hf_problem_load(const char *path, const hf_problem_source *source, const char *const *set, int n_set,

@@ -20,16 +20,13 @@
 
 /* ---- checks ---- */
 
-static hf_status check_masses(const hf_problem *p, int i, const int *cable, int n, hf_messages *messages)
+static hf_status check_masses(const hf_problem *p, const hf_material *material, int i, const int *cable, int n,
+                              hf_messages *messages)
 {
     char place[HF_LOCATION_SIZE];
-    hf_material material;
     int n_unknown = 0, first = 0;
-    hf_status status = hf_config_material(&p->settings, &p->scene, &material, messages);
-    for (int k = 0; k < n && status == HF_OK; k++)
-        if (isnan(material.mass_kg_per_m[cable[k]]) && n_unknown++ == 0) first = cable[k];
-    hf_material_free(&material);
-    HF_TRY(status);
+    for (int k = 0; k < n && material; k++)
+        if (isnan(material->mass_kg_per_m[cable[k]]) && n_unknown++ == 0) first = cable[k];
     if (n_unknown == 0) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,
                     "%s: %d cable%s no mass per length, such as '%s'. Add mass_kg_per_m to a row of the list `cables`",
@@ -49,13 +46,15 @@ static hf_status check_frequency(const hf_problem *p, int i, hf_messages *messag
                     hf_config_place(&p->settings, place, "requirements.%d.figure", i), frequency_Hz / 1e9);
 }
 
-static hf_status check_row(const hf_problem *p, int i, int *cable, hf_messages *messages)
+static hf_status check_row(const hf_problem *p, const hf_material *material, int i, int *cable, hf_messages *messages)
 {
     const hf_requirement_settings *r = &p->settings.requirement[i];
     char place[HF_LOCATION_SIZE];
     int n = hf_cable_pick_some(&p->scene, r->set, hf_config_place(&p->settings, place, "requirements.%d.set", i), cable,
                                messages);
     if (n == 0) return HF_BAD_CASE;
+    if (r->figure == HF_REQUIRED_MASS) return check_masses(p, material, i, cable, n, messages);
+    if (!(p->surface.focal_length_m > 0)) return HF_OK; /* no section surface, or one with faults */
     bool is_radio = hf_required_is_of(r->figure, HF_REQUIRED_OF_RADIO);
     if (is_radio && p->facets.n_facet == 0)
         return hf_error(messages, HF_BAD_CASE,
@@ -65,19 +64,22 @@ static hf_status check_row(const hf_problem *p, int i, int *cable, hf_messages *
         return hf_error(messages, HF_BAD_CASE,
                         "%s: this net has no facets. To bound the errors of the nodes, use the figure surface",
                         hf_config_place(&p->settings, place, "requirements.%d.figure", i));
-    if (is_radio) HF_TRY(check_frequency(p, i, messages));
-    return r->figure == HF_REQUIRED_MASS ? check_masses(p, i, cable, n, messages) : HF_OK;
+    return is_radio && r->frequency_Hz > 0 ? check_frequency(p, i, messages) : HF_OK;
 }
 
-hf_status hf_requirements_stage_check(const hf_problem *p, hf_messages *messages)
+hf_status hf_requirements_stage_check(const hf_problem *p, const hf_material *material, hf_messages *messages)
 {
     int *cable;
     void *block;
     hf_status worst = HF_OK;
     if (p->settings.n_requirement == 0) return HF_OK;
-    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(cable, p->scene.n_cable)));
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(cable, p->scene.n_cable)) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the requirements");
     for (int i = 0; i < p->settings.n_requirement; i++)
-        if (check_row(p, i, cable, messages) != HF_OK) worst = HF_BAD_CASE;
+        if (hf_config_is_read(&p->settings, "requirements.%d", i) &&
+            hf_config_is_sound(&p->settings, "requirements.%d.set", i) &&
+            check_row(p, material, i, cable, messages) != HF_OK)
+            worst = HF_BAD_CASE;
     hf_arena_free_block(block);
     return worst;
 }

@@ -16,9 +16,10 @@ typedef struct {
     void *block;
 } hf_requirements_stage;
 
-/* Refuses rows whose figure or set this net does not have. Returns HF_OK or HF_BAD_CASE, with a message for each
- * fault. */
-hf_status hf_requirements_stage_check(const hf_problem *problem, hf_messages *messages);
+/* Refuses rows whose figure or set this net does not have. The problem needs a scene, and for figures of a surface the
+ * surface with its facets. `material` is that of its cables; NULL: not known. Returns HF_OK, HF_BAD_CASE or
+ * HF_NO_MEMORY, with a message for each fault. */
+hf_status hf_requirements_stage_check(const hf_problem *problem, const hf_material *material, hf_messages *messages);
 
 /* Prepares the rows of a problem, which have been checked. `masses` receives the mass of the cables, if a row needs it.
  * Returns HF_OK, HF_NO_MEMORY or HF_BAD_CASE, with a message. The caller frees both in any case. */

@@ -56,7 +56,10 @@ static hf_status prepare(hf_run *r, hf_summary *s, hf_messages *messages)
         return hf_error(messages, HF_BAD_USAGE,
                         "%s: this file has a `sweep` section. Run the study with 'hifdm sweep %s'", q->case_path,
                         q->case_path);
-    HF_TRY(hf_tolerance_stage_check(&r->problem, part->of_tolerance, messages));
+    if (part->of_tolerance && !settings->has_tolerance)
+        return hf_error(messages, HF_BAD_USAGE,
+                        "%s: the case has no `tolerance` section. 'hifdm schema' lists the keys of this section",
+                        q->case_path);
     HF_TRY(hf_requirements_stage_open(&r->problem, &r->requirements, messages));
     if (q->seed) settings->optimize.seed = *q->seed;
     if (q->seed && !settings->has_optimize)

@@ -156,32 +156,21 @@ static hf_status check_struts(const hf_problem *p, hf_messages *messages)
                     place_section(&p->settings, place), n, n == 1 ? " is" : "s are", s->cable_id[first]);
 }
 
-static hf_status make_material(const hf_problem *p, hf_material *t, hf_messages *messages)
+hf_status hf_tolerance_stage_check(const hf_problem *p, const hf_material *material, hf_messages *messages)
 {
-    hf_status status = hf_config_material(&p->settings, &p->scene, t, messages);
-    return status == HF_OK ? check_expansion(p, t, messages) : status;
-}
-
-hf_status hf_tolerance_stage_check(const hf_problem *p, bool is_demanded, hf_messages *messages)
-{
-    if (!p->settings.has_tolerance && !is_demanded) return HF_OK;
-    if (!p->settings.has_tolerance)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "%s: the case has no `tolerance` section. 'hifdm schema' lists the keys of this section",
-                        p->settings.path);
-    hf_material material;
     char place[HF_LOCATION_SIZE];
-    hf_status status = make_material(p, &material, messages), other[5] = {HF_OK};
-    if (status != HF_NO_MEMORY) other[2] = check_cuts(p, &material, messages);
-    hf_material_free(&material);
     place_section(&p->settings, place);
-    other[0] = hf_cable_demand_EA(&p->scene, place, "errors of as-built nets need", "", messages);
-    other[1] = check_struts(p, messages);
-    other[3] = check_truss_heat(p, messages);
-    other[4] = check_load_errors(p, messages);
-    for (int i = 0; i < 5 && status == HF_OK; i++)
-        status = other[i];
-    return status;
+    const hf_status of[] = {
+        check_expansion(p, material, messages),
+        check_cuts(p, material, messages),
+        hf_cable_demand_EA(&p->scene, place, "errors of as-built nets need", "", messages),
+        check_struts(p, messages),
+        check_truss_heat(p, messages),
+        check_load_errors(p, messages),
+    };
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++)
+        HF_TRY(of[i]);
+    return HF_OK;
 }
 
 /* ---- the identity of samples ---- */
@@ -325,7 +314,7 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
     double *by_heat;
     void *block = NULL;
     size_t n_move = 3 * (size_t)t->n_truss * (size_t)p->model.n_attachment;
-    hf_status status = make_material(p, &material, messages);
+    hf_status status = hf_config_material(&p->settings, &p->scene, &material, messages);
     if (status == HF_OK) {
         status = HF_ARENA_ARRAYS(&block, HF_ARRAY(by_heat, n_move));
         if (status == HF_OK) status = hf_load_case_stage_rest_by_heat(p, by_heat);

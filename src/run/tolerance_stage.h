@@ -15,9 +15,9 @@ static inline bool hf_tolerance_stage_is_task(const hf_run_request *request)
 void hf_tolerance_stage_end(const hf_run_request *request, const char *output);
 
 /* Refuses a case for which hf_stage_samples would fail before it solves anything: cables without EA or expansion,
- * struts, errors that may leave nothing of a cable. Returns HF_OK or HF_BAD_CASE.
- * Without a section `tolerance` it returns HF_OK, or HF_BAD_USAGE if is_demanded. */
-hf_status hf_tolerance_stage_check(const hf_problem *problem, bool is_demanded, hf_messages *messages);
+ * struts, errors that may leave nothing of a cable. The case has a section `tolerance`, and `material` is that of the
+ * cables. Returns HF_OK or HF_BAD_CASE. */
+hf_status hf_tolerance_stage_check(const hf_problem *problem, const hf_material *material, hf_messages *messages);
 
 /* Returns HF_EXISTS if a journal next to the output has samples of another case and the request does not restart;
  * HF_NO_MEMORY; else HF_OK. */

@@ -68,7 +68,7 @@ START_TEST(faults_are_named)
         {"  - {figure: deflection, at_most: 1}\n", "6:14: requirements.0.figure: needs a section truss"},
         {"  - {figure: mass, at_most: 1}\n",
          "6:14: requirements.0.figure: 58 cables have no mass per length, such as '"},
-        {"  - {figure: mass, at_most: 1, share: 0.5}\n" SAMPLES,
+        {"  - {figure: mass, at_most: 1, share: 0.5}\n" SAMPLES "cables: [{mass_kg_per_m: 1e-3}]\n",
          "6:39: requirements.0.share: has no meaning for mass, which neither loads nor errors change"},
         {"  - {figure: mass, at_most: 1, load_case: cold}\n" LOADED,
          "6:43: requirements.0.load_case: has no meaning for mass"},
@@ -116,6 +116,107 @@ START_TEST(faults_are_named)
     ERR("f.yaml:4:25: requirements.0.figure: this net has no facets. To bound the errors of the nodes, use the figure "
         "surface");
     ck_assert(!is_there(temp("nowhere.h5")));
+}
+END_TEST
+
+/* One call reports the faults of a file, so that a user does not mend one and meets the next. The lists of a file
+ * begin in line 4. A fault that follows from another one is not reported. */
+START_TEST(all_faults_are_reported_at_once)
+{
+#define EA "scene.EA_inner_N=1e5", "--set", "scene.EA_boundary_N=1e5"
+#define NO_SET(row, set) ": requirements." #row ".set: this net has no cable set '" #set "'"
+#define NO_BOUND(row) ": requirements." #row ".figure: has no bound"
+    static const struct {
+        const char *text, *fault[6];
+    } file[] = {
+        {"requirements:\n  - {figure: tension, at_least: 5, at_most: 2, share: 0.9, set: innr}\n",
+         {"5:33: requirements.0.at_least: must not be above at_most", "5:55: requirements.0.share: needs a section",
+          "5:65" NO_SET(0, innr)}},
+        {"requirements:\n  - {figure: tension, at_least: 5, set: innr}\n  - {figure: ratio, at_most: 5, set: out}\n"
+         "  - {figure: mass, at_most: 1}\n",
+         {"5:41" NO_SET(0, innr), "6:38" NO_SET(1, out), "7:14: requirements.2.figure: 58 cables have no mass"}},
+        {"requirements:\n  - {figure: tensoin, at_least: 5}\n  - {figure: psi}\n"
+         "  - {figure: tension, at_least: 1, share: 0.9}\n",
+         {"5:14: requirements.0.figure: must be one of psi", "6:14" NO_BOUND(1), "7:43: requirements.2.share: needs"}},
+        {"requirements:\n  - {figure: surface, at_most: 1}\n  - {figure: tension, set: innr, at_least: 1}\n",
+         {"5:14: requirements.0.figure: is not measured", "6:28" NO_SET(1, innr)}},
+        {"load_cases:\n  - {name: cold, temperature_K: -20}\nrequirements:\n"
+         "  - {figure: tension, set: innr, at_least: 1, load_case: cold}\n",
+         {"5:33: load_cases.0.temperature_K: 58 cables have no thermal expansion", "7:28" NO_SET(0, innr)}},
+        {"requirements: [{figure: tension, set: innr, at_least: 1}]\noptimize:\n"
+         "  limits: [{figure: tension, set: bundary, bounds: [1, 5]}]\n"
+         "  variables: [{set: xx, vary: force_density, range: 10 %}]\n"
+         "  objective: [{figure: length, set: yy, target: 1}]\n",
+         {"4:39" NO_SET(0, innr), "6:35: optimize.limits.0.set: this net has", "7:21: optimize.variables.0.set: this",
+          "8:37: optimize.objective.0.set: this net has"}},
+        {"requirements: [{figure: psi}]\noptimize: {min_tension_N: 5, max_tension_N: 2, elites: 9, population: 8}\n",
+         {"4:25" NO_BOUND(0), "5:27: optimize.min_tension_N: must be below", "5:56: optimize.elites: must be below"}},
+        {"cables: [{set: inner}]\nrequirements:\n  - {figure: psi}\n  - {figure: deflection, at_most: 1}\n",
+         {"4:16: cables.0.set: says nothing", "6:14" NO_BOUND(0), "7:14: requirements.1.figure: needs a section"}},
+        {"surface: {frequencies_Hz: [8]}\nrequirements:\n  - {figure: gain, at_least: 1, frequency_Hz: 7}\n"
+         "  - {figure: psi}\n",
+         {"4:27: surface.frequencies_Hz: is 8 Hz", "6:47: requirements.0.frequency_Hz: is 7 Hz", "7:14" NO_BOUND(1)}},
+        {"truss: {import: {nodes: n.csv, members: m.csv}, depth_m: 1}\nrequirements:\n  - {figure: psi}\n"
+         "  - {figure: tension, set: innr, at_least: 2}\n",
+         {"4:58: truss.depth_m: has no effect beside truss.import", "6:14" NO_BOUND(0), "7:28" NO_SET(1, innr)}},
+        {"surface: {}\nrequirements:\n  - {figure: gain_loss, at_most: 1, frequency_Hz: 8e12}\n"
+         "  - {figure: tension, set: innr, at_least: 2}\n  - {figure: mass, set: innr, at_most: 1}\n",
+         {"6:14: requirements.0.figure: hifdm cannot compute this figure at 8000 GHz", "7:28" NO_SET(1, innr),
+          "8:25" NO_SET(2, innr)}},
+        {"tolerance: {sigma_temperature_K: 5, samples: 100}\nrequirements:\n  - {figure: psi}\n"
+         "  - {figure: tension, set: innr, at_least: 2, share: 0.99}\n",
+         {"4:34: tolerance.sigma_temperature_K: needs expansion_per_K", "6:14" NO_BOUND(0), "7:28" NO_SET(1, innr),
+          "7:54: requirements.1.share: cannot be decided by 100 samples"}},
+        {"requirements:\n  - {figure: tension, at_least: 5}\n  - {figure: tension, at_most: 2}\n"
+         "  - {figure: ratio, at_most: 2, set: innr}\n",
+         {"6:14: requirements.1.figure: contradicts", "7:38" NO_SET(2, innr)}},
+        {"requirements:\n  - {figure: tension, at_leat: 1}\n  - {at_most: 1}\n  - {figure: psi}\n"
+         "  - {figure: deflection, at_most: 1}\n  - {figure: tension, at_least: 1, set: innr}\n",
+         {"5:23: at_leat: unknown key", "6:5: requirements.1.figure: is missing", "7:14" NO_BOUND(2),
+          "8:14: requirements.3.figure: needs a section truss", "9:41" NO_SET(4, innr)}},
+        {"load_cases: [{name: cold, temperature_K: -20, part: truss}, {name: warm, temperature_K: 5, set: innr}]\n"
+         "cables: [{set: edg, expansion_per_K: 0}]\nrequirements: [{figure: tension, set: bundary, at_least: 1}]\n",
+         {"5:16: cables.0.set: this net has no cable set 'edg'", "6:39" NO_SET(0, bundary)}},
+        {"load_cases: [{name: cold, temperature_K: -20, part: truss}, {name: warm, temperature_K: 5, set: innr}]\n"
+         "cables: [{expansion_per_K: 0}]\nrequirements: [{figure: tension, set: bundary, at_least: 1}]\n",
+         {"4:53: load_cases.0.part: the case has no truss", "4:97: load_cases.1.set: this net has no cable set 'innr'",
+          "6:39" NO_SET(0, bundary)}},
+        {"surface: {frequencies_Hz: [1e9], pattern: {feed: {position_m: [0, 0, -3]}}}\n"
+         "requirements: [{figure: tension, set: innr, at_least: 1}]\n",
+         {"4:63: surface.pattern.feed.position_m: from (0, 0, -3) m", "5:39" NO_SET(0, innr)}},
+        {"cables: [{expansion_per_K: 0}]\nload_cases: [{name: windy, force_N: [0, 0, -1]}]\n"
+         "tolerance: {sigma_cut_m: 1e-4, samples: 100, sigma_gravity_ratio: 0.1}\n"
+         "requirements: [{figure: tension, set: innr, at_least: 1, load_case: windy, share: 0.9}]\n",
+         {"4:28: cables.0.expansion_per_K: has no effect", "6:67: tolerance.sigma_gravity_ratio: no load case has",
+          "7:39" NO_SET(0, innr)}},
+        /* what would follow from a misspelt section, list or word is left out */
+        {"tolerence: {sigma_cut_m: 1e-4}\nrequirements: [{figure: psi, at_most: 1, share: 0.9}, {figure: psi}]\n",
+         {"4:1: tolerence: unknown key", "5:64" NO_BOUND(1)}},
+        {"load_cases: [{nam: cold, temperature_K: -20}]\ntolerance: {samples: many}\nsurface: 1\nrequirements:\n"
+         "  - {figure: psi, at_most: 1, load_case: cold, share: 0.99}\n  - {figure: facets, at_most: 1}\n",
+         {"4:15: nam: unknown key", "4:14: load_cases.0.name: is missing", "5:22: tolerance.samples: must be a whole",
+          "6:1: surface: must be a section"}},
+    };
+    for (size_t k = 0; k < sizeof file / sizeof *file; k++) {
+        const char *c = file_with("f.yaml", formatted("title: t\n" SMALL_SCENE "%s", file[k].text));
+        for (int is_run = 0; is_run < 2; is_run++) {
+            int n = 0;
+            if (is_run)
+                HIFDM(2, "run", c, "--set", EA, NOWHERE);
+            else
+                HIFDM(2, "check", c, "--set", EA);
+            for (; file[k].fault[n]; n++)
+                ERRS("f.yaml:%s", file[k].fault[n]);
+            ck_assert_msg(count_of(said.err, "error: ") == n, "file %zu:\n%s", k, said.err);
+        }
+    }
+    /* one fault of the net leaves the rows to be checked, and is itself reported once */
+    HIFDM(2, "check",
+          file_with("f.yaml", "title: t\n" SMALL_SCENE "load_cases: [{name: windy, force_N: [0, 0, -1]}]\n" SAMPLES
+                              "requirements: [{figure: tension, set: innr, at_least: 1, share: 0.9}]\n"));
+    ERR("f.yaml:4:21: load_cases.0.name: 58 cables have no stiffness EA");
+    ERR("f.yaml:6:39" NO_SET(0, innr));
+    ck_assert_int_eq(count_of(said.err, "error: "), 2);
 }
 END_TEST
 
@@ -661,6 +762,7 @@ Suite *suite_cli_requirements(void)
     TCase *tests = tcase_create("requirements");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, faults_are_named);
+    tcase_add_test(tests, all_faults_are_reported_at_once);
     tcase_add_test(tests, rows_that_differ_are_accepted);
     tcase_add_test(tests, a_run_begins_with_its_verdict);
     tcase_add_test(tests, json_and_file_have_all_rows);
