@@ -11,6 +11,7 @@
 #include "out/print.h"
 #include "out/print_summary.h"
 #include "run/check.h"
+#include "run/problem_nets.h"
 
 #include <limits.h>
 #include <math.h>
@@ -162,6 +163,28 @@ static void print_cost_of_nets(const hf_check *c, FILE *f)
     fputc('\n', f);
 }
 
+/* Prints how many rows of `requirements` constrain the optimisation, and which do not. */
+static void print_constraints(const hf_problem *p, FILE *f)
+{
+    const hf_case *c = &p->settings;
+    char others[HF_REQUIREMENT_ROWS_MAX * 64] = "", reason[64];
+    int n = 0;
+    for (int i = 0; i < c->n_requirement; i++) {
+        const hf_requirement_settings *r = &c->requirement[i];
+        bool is_constraint = hf_problem_is_constrained_by(p, i);
+        n += is_constraint;
+        if (is_constraint) continue;
+        snprintf(reason, sizeof reason, "requirements.%d (%s)", i,
+                 r->search == HF_SEARCH_OFF       ? "search: off"
+                 : r->figure == HF_REQUIRED_SLACK ? "slack_cables without at_most"
+                                                  : hf_required_figure_word[r->figure]);
+        hf_text_append(others, sizeof others, ", ", reason, "");
+    }
+    if (c->n_requirement)
+        fprintf(f, "                requirements: %d of %d row%s the optimisation%s%s\n", n, c->n_requirement,
+                c->n_requirement == 1 ? " constrains" : "s constrain", *others ? "; not " : "", others);
+}
+
 /* Prints objectives, limits and the cap on the boundary tension ratio, which also holds if the case does not set it. */
 static void print_wishes(const hf_check *c, FILE *f)
 {
@@ -187,6 +210,7 @@ static void print_wishes(const hf_check *c, FILE *f)
         print_bounds(s->lower, s->upper, f);
         fputc('\n', f);
     }
+    print_constraints(p, f);
     bool is_given = hf_config_location(&p->settings, "optimize.boundary_ratio_cap", location, sizeof location);
     fprintf(f, "                boundary_ratio_cap %g%s\n", o->boundary_ratio_cap, is_given ? "" : " (the default)");
 }

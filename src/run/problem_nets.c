@@ -139,6 +139,15 @@ const hf_constraints *hf_problem_constraints_of(const hf_problem *p)
     return p->nets && p->nets->constraints.as.n > 0 ? &p->nets->constraints.as : NULL;
 }
 
+bool hf_problem_is_constrained_by(const hf_problem *p, int row)
+{
+    const hf_constraints *c = hf_problem_constraints_of(p);
+    int k = 0;
+    while (c && k < c->n && p->nets->constraints.row[k] != row)
+        k++;
+    return c && k < c->n;
+}
+
 const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_t size)
 {
     const hf_constraints *c = p->objectives.constraints;

@@ -238,6 +238,23 @@ START_TEST(rows_that_differ_are_accepted)
 }
 END_TEST
 
+START_TEST(check_counts_the_rows_that_constrain)
+{
+    const char *c = file_with("c.yaml", BUILT_SCENE ROWS "  - {figure: tension, at_least: 1}\n"
+                                                         "  - {figure: psi, at_most: 1, search: off}\n"
+                                                         "  - {figure: slack_cables, at_least: 0}\n"
+                                                         "  - {figure: loose_nodes, at_most: 0}\n"
+                                                         "  - {figure: slack_cables, at_most: 0}\n");
+    HIFDM(0, "check", c, "--set", "optimize.method=lm");
+    OUT("\n                requirements: 2 of 5 rows constrain the optimisation; not requirements.1 (search: off), "
+        "requirements.2 (slack_cables without at_most), requirements.3 (loose_nodes)\n");
+    HIFDM(0, "check", c);
+    ck_assert_ptr_null(strstr(said.out, "constrain"));
+    HIFDM(0, "check", file_with("d.yaml", BUILT_SCENE "requirements: [{figure: psi, at_most: 1}]\noptimize: {}\n"));
+    OUT("\n                requirements: 1 of 1 row constrains the optimisation\n");
+}
+END_TEST
+
 /* ---- verdicts ---- */
 
 #define MIXED                                                                                                          \
@@ -764,6 +781,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, faults_are_named);
     tcase_add_test(tests, all_faults_are_reported_at_once);
     tcase_add_test(tests, rows_that_differ_are_accepted);
+    tcase_add_test(tests, check_counts_the_rows_that_constrain);
     tcase_add_test(tests, a_run_begins_with_its_verdict);
     tcase_add_test(tests, json_and_file_have_all_rows);
     tcase_add_test(tests, a_bound_at_the_value_is_undecided);
