@@ -103,7 +103,7 @@ static void check_twice(const hf_case *c, int row, hf_config_faults *f)
     for (int i = 0; i < row; i++) {
         const hf_load_case_settings *before = &b->load_case[i];
         if (strcmp(before->name, s->name) != 0 || !hf_config_is_read(c, "%s.%d", load_case_list, i)) continue;
-        snprintf(what, sizeof what, "row %d has it for this load case already", i);
+        snprintf(what, sizeof what, "%s.%d has it for this load case already", load_case_list, i);
         if (!isnan(s->gravity_m_per_s2) && !isnan(before->gravity_m_per_s2))
             hf_config_fault_in_row(f, load_case_list, row, "gravity_m_per_s2", what);
         if (has_temperature(s) && has_temperature(before) && s->part == before->part && !strcmp(s->set, before->set))

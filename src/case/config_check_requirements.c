@@ -124,10 +124,10 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
         if (!overlaps || !(is_same || shares_cables(r, q))) continue;
         if (is_same && is_same_case && is_same_share &&
             ((isfinite(mine[0]) && isfinite(other[0])) || (isfinite(mine[1]) && isfinite(other[1])))) {
-            snprintf(what, sizeof what, "is bounded by row %d already; keep one of the rows", k);
+            snprintf(what, sizeof what, "is bounded by %s.%d already; keep one of the rows", list, k);
             hf_config_fault_in_row(f, list, i, "figure", what);
         } else if (mine[0] > other[1] || mine[1] < other[0]) {
-            snprintf(what, sizeof what, "contradicts row %d: no value meets both rows", k);
+            snprintf(what, sizeof what, "contradicts %s.%d: no value meets both rows", list, k);
             hf_config_fault_in_row(f, list, i, "figure", what);
         }
     }

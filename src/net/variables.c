@@ -42,7 +42,7 @@ static bool varies_support(hf_vary vary)
 static hf_status take(maker *q, int row, int at, const char *kind, const char *id)
 {
     if (q->taken[at] >= 0)
-        return hf_error(q->messages, HF_BAD_CASE, "%s: %s '%s' is already a design variable of row %d",
+        return hf_error(q->messages, HF_BAD_CASE, "%s: %s '%s' is already a design variable of optimize.variables.%d",
                         where_in(q, row, "set"), kind, id, q->taken[at]);
     q->taken[at] = row;
     return HF_OK;

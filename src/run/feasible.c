@@ -385,7 +385,7 @@ static void report_contradiction(const feasible *q, int n, const int *side, doub
     for (int i = 0; i < n && i < NAMED_MAX; i++) {
         const hf_feasible_bound *b = &q->bound[side[i] / N_SIDE];
         char one[SIDE_SIZE], row[64] = "";
-        if (b->row >= 0) snprintf(row, sizeof row, " (row %d)", b->row);
+        if (b->row >= 0) snprintf(row, sizeof row, " (%s.%d)", b->list, b->row);
         used +=
             (size_t)snprintf(list + used, sizeof list - used, "%s%s%s", i ? ", " : "", name_side(q, side[i], one), row);
     }

@@ -128,7 +128,9 @@ START_TEST(rows_that_the_net_cannot_serve_have_their_places)
                                         "    {figure: tension, set: tie, target: 1}, {figure: facets}]\n");
     HIFDM(2, "run", path, "-o", temp("c.h5"));
     ERRS("error: %s:6:13: optimize.variables.0.set: this net has no cable set 'egde'; did you mean 'edge'?\n", path);
-    ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is already a design variable of row 1\n", path);
+    ERRS("error: %s:8:12: optimize.variables.2.set: cable 'n0_0-n1_0' is already a design variable of "
+         "optimize.variables.1\n",
+         path);
     ERRS("error: %s:11:26: optimize.variables.3.vary: cable 'n1_0-n1_1' of set inner has the law tension, but only "
          "cables with the law elastic have an unstressed length\n",
          path);

@@ -57,8 +57,10 @@ END_TEST
 START_TEST(limits_that_contradict_each_other_are_named_together)
 {
     HIFDM(0, "check", dish(TIE("6.2") ", {figure: tension, set: front, bounds: [null, 9]}"));
-    ERR("optimize.limits.0: " NO_DESIGN " meets these limits together: tension of tie at least 6.2 N (row 0), tension "
-        "of front at most 9 N (row 1). Each would have to be loosened by 0.87 N; loosen one of them or widen the "
+    ERR("optimize.limits.0: " NO_DESIGN
+        " meets these limits together: tension of tie at least 6.2 N (optimize.limits.0), tension "
+        "of front at most 9 N (optimize.limits.1). Each would have to be loosened by 0.87 N; loosen one of them or "
+        "widen the "
         "design variables");
 }
 END_TEST

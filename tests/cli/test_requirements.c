@@ -61,7 +61,7 @@ START_TEST(faults_are_named)
          "6:61: requirements.0.feed: cannot be refocused for pointing"},
         {"  - {figure: gain_loss, at_most: 1}\n  - {figure: gain_loss, at_most: 2, frequency_Hz: 8e8}\n"
          "surface: {frequencies_Hz: [8e8]}\n",
-         "7:14: requirements.1.figure: is bounded by row 0 already; keep one of the rows"},
+         "7:14: requirements.1.figure: is bounded by requirements.0 already; keep one of the rows"},
         {"  - {figure: gain_loss, at_most: 1, frequency_Hz: 8e12}\nsurface: {}\n",
          "6:14: requirements.0.figure: hifdm cannot compute this figure at 8000 GHz, because its facets are too "
          "coarse"},
@@ -83,13 +83,13 @@ START_TEST(faults_are_named)
         {"  - {figure: tension, at_least: 1, share: 0}\n" SAMPLES,
          "6:43: requirements.0.share: must be above 0 and at most 1, not 0"},
         {"  - {figure: tension, at_least: 1}\n  - {figure: tension, at_least: 2}\n",
-         "7:14: requirements.1.figure: is bounded by row 0 already; keep one of the rows"},
+         "7:14: requirements.1.figure: is bounded by requirements.0 already; keep one of the rows"},
         {"  - {figure: tension, at_least: 5}\n  - {figure: tension, set: all, at_most: 2}\n",
-         "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},
+         "7:14: requirements.1.figure: contradicts requirements.0: no value meets both rows"},
         {"  - {figure: tension, at_least: 5}\n  - {figure: tension, set: boundary, at_most: 2}\n",
-         "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},
+         "7:14: requirements.1.figure: contradicts requirements.0: no value meets both rows"},
         {"  - {figure: psi, at_most: 1}\n  - {figure: psi, at_least: 2, load_case: all}\n" LOADED,
-         "7:14: requirements.1.figure: contradicts row 0: no value meets both rows"},
+         "7:14: requirements.1.figure: contradicts requirements.0: no value meets both rows"},
     };
     for (size_t k = 0; k < sizeof fault / sizeof *fault; k++) {
         const char *c = file_with("f.yaml", formatted(BUILT_SCENE ROWS "%s", fault[k][0]));
@@ -252,6 +252,18 @@ START_TEST(check_counts_the_rows_that_constrain)
     ck_assert_ptr_null(strstr(said.out, "constrain"));
     HIFDM(0, "check", file_with("d.yaml", BUILT_SCENE "requirements: [{figure: psi, at_most: 1}]\noptimize: {}\n"));
     OUT("\n                requirements: 1 of 1 row constrains the optimisation\n");
+}
+END_TEST
+
+START_TEST(a_run_without_a_design_names_the_row)
+{
+    const char *c = file_with("c.yaml", BUILT_SCENE ROWS "  - {figure: loose_nodes, at_most: 0}\n"
+                                                         "  - {figure: tension, set: inner, at_least: 500}\n" SMALL_GA);
+    HIFDM(3, "run", c, NOWHERE);
+    ERR("; of the initial design, the bound of requirements.1 (tension of inner) is not met by 490 N. Loosen the "
+        "limits");
+    HIFDM(3, "run", c, NOWHERE, "--set", "optimize.method=lm", "--restart");
+    ERR("breaks a limit or a requirement: bound of requirements.1 (tension of inner) is not met by 490 N");
 }
 END_TEST
 
@@ -782,6 +794,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, all_faults_are_reported_at_once);
     tcase_add_test(tests, rows_that_differ_are_accepted);
     tcase_add_test(tests, check_counts_the_rows_that_constrain);
+    tcase_add_test(tests, a_run_without_a_design_names_the_row);
     tcase_add_test(tests, a_run_begins_with_its_verdict);
     tcase_add_test(tests, json_and_file_have_all_rows);
     tcase_add_test(tests, a_bound_at_the_value_is_undecided);

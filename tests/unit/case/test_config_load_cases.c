@@ -145,7 +145,7 @@ static const struct {
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1, part: net, set: tie}\n", "",
      "error: c.yaml:8:39: load_cases.0.part: does not go with set: a row names cables or members\n"},
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1}\n  - {name: a, temperature_K: 2}\n", "",
-     "error: c.yaml:9:30: load_cases.1.temperature_K: row 0 has it for this load case already\n"},
+     "error: c.yaml:9:30: load_cases.1.temperature_K: load_cases.0 has it for this load case already\n"},
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1}\n  - {name: b, set: tie, force_N: [1, 0, 0]}\n", "",
      "error: c.yaml:9:20: load_cases.1.set: has no meaning without temperature_K or gradient_K_per_m\n"},
     {CABLES "load_cases:\n  - {name: a, temperature_K: 1, direction: [0, 0, 1], role: edge}\n", "",
