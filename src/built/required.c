@@ -51,8 +51,7 @@ static int column_of(hf_required *q, const hf_requirement_settings *r, bool is_m
     for (; k < q->n_column; k++) {
         const hf_required_column *old = &q->column[k];
         if (old->figure == c.figure && old->antenna == c.antenna && old->is_minimum == c.is_minimum &&
-            old->feed == c.feed && old->n_cable == n_cable &&
-            !memcmp(old->cable, cable, (size_t)n_cable * sizeof *cable))
+            old->feed == c.feed && !strcmp(old->set, c.set)) /* by name, because data sets have it */
             break;
     }
     if (k == q->n_column) q->column[q->n_column++] = c;

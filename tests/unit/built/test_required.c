@@ -44,7 +44,7 @@ static const struct hand_cable star_cable[] = {{{0, 1}, HF_GROUP_INNER, HF_LAW_T
 
 /* ---- columns and figures ---- */
 
-/* Rows of the same figure and cables share a column, whose load cases are those of all its rows. */
+/* Rows of the same figure and set share a column, whose load cases are those of all its rows. */
 START_TEST(columns_are_measured_once)
 {
     row_list l = {0};
@@ -53,7 +53,7 @@ START_TEST(columns_are_measured_once)
     char name[HF_REQUIRED_NAME_SIZE];
     OPEN_HAND(&net, star_node, star_cable, HF_METHOD_NEWTON);
     add(&l, HF_REQUIRED_TENSION, "", "nominal", 5, 60, NAN);
-    add(&l, HF_REQUIRED_TENSION, "all", "hot", 4, NAN, 0.9);
+    add(&l, HF_REQUIRED_TENSION, "", "hot", 4, NAN, 0.9);
     add(&l, HF_REQUIRED_TENSION, "inner", "all", NAN, 50, 0.5);
     add(&l, HF_REQUIRED_SLACK, "", "cold", 0, 2, NAN);
     add(&l, HF_REQUIRED_FACETS, "", "all", NAN, 1, NAN);
