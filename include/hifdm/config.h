@@ -141,6 +141,7 @@ typedef enum {
     HF_FIELD_INT_PAIR,    /* int[2] */
     HF_FIELD_WORD,        /* index into `words` */
     HF_FIELD_TEXT,        /* text including its NUL */
+    HF_FIELD_SET,         /* text including its NUL: names of sets of cables, joined by + */
     HF_FIELD_DOUBLE_LIST, /* hf_double_list */
     HF_FIELD_AMOUNT,      /* double[2]: a number or a ratio, such as 0.3 for 30 %; NaN: not given */
     HF_FIELD_BOUNDS,      /* double[2]: lower < upper; an open side is infinite */

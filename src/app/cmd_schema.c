@@ -13,6 +13,7 @@ static void print_range(const hf_field *field, FILE *f)
                                        "two whole numbers",
                                        "",
                                        "text",
+                                       "text or list of texts",
                                        "list of numbers",
                                        "number",
                                        "[low, high], of which one may be null",
@@ -23,7 +24,7 @@ static void print_range(const hf_field *field, FILE *f)
         return;
     }
     fprintf(f, "%s", type[field->type]);
-    if (field->type == HF_FIELD_TEXT || field->min <= -1e300) return;
+    if (field->type == HF_FIELD_TEXT || field->type == HF_FIELD_SET || field->min <= -1e300) return;
     if (field->min == HF_ABOVE_ZERO)
         fprintf(f, " > 0");
     else

@@ -3,16 +3,22 @@
 #include "case/config_check.h"
 
 #include "base/text.h"
-#include <hifdm/cable_set.h>
+#include "net/cable_pick.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const char *set_fault(const char *set)
+static const char *set_fault(const char *sets)
 {
-    bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]) || !strcmp(set, "all");
-    return *set && !is_group ? hf_cable_set_name_fault(set) : NULL;
+    const char *fault = NULL, *rest = *sets ? sets : NULL;
+    char set[HF_SET_NAME_SIZE];
+    while (rest && !fault) {
+        rest = hf_cable_pick_name(rest, set);
+        bool is_group = !strcmp(set, hf_group_word[0]) || !strcmp(set, hf_group_word[1]) || !strcmp(set, "all");
+        fault = is_group ? NULL : hf_cable_set_name_fault(set);
+    }
+    return fault;
 }
 
 void hf_config_check_set(hf_config_faults *f, const char *list, int row, const char *set)

@@ -84,7 +84,7 @@ const hf_field hf_field_table[] = {
     {"coupling.scheme", HF_FIELD_WORD, AT(form.coupling.scheme), 0, 0, "auto", "", hf_coupling_scheme_word},
     {"coupling.max_iterations", HF_FIELD_INT, AT(form.coupling.max_iterations), 1, 1000000, "200", "", NULL},
 
-    {"adjust.set", HF_FIELD_TEXT, AT(adjust.set), 1, HF_SET_NAME_SIZE, NULL, "", NULL},
+    {"adjust.set", HF_FIELD_SET, AT(adjust.set), 1, HF_SET_NAME_SIZE, NULL, "", NULL},
     {"adjust.range_m", HF_FIELD_DOUBLE, AT(adjust.range_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL},
     {"adjust.step_m", HF_FIELD_DOUBLE, AT(adjust.step_m), HF_ABOVE_ZERO, 1e3, NULL, "m", NULL},
     {"adjust.max_adjustments", HF_FIELD_INT, AT(adjust.max_adjustments), 1, 1000000, "10", "", NULL},
@@ -172,7 +172,7 @@ _Static_assert(IN(variable, range_ratio) == IN(variable, range) + sizeof(double)
                    IN(variable, upper) == IN(variable, lower) + sizeof(double),
                "a range is an amount, bounds are bounds");
 static const hf_field variable_field[] = {
-    {"set", HF_FIELD_TEXT, IN(variable, set), 1, HF_SET_NAME_SIZE, NULL, "", NULL},
+    {"set", HF_FIELD_SET, IN(variable, set), 1, HF_SET_NAME_SIZE, NULL, "", NULL},
     {"vary", HF_FIELD_WORD, IN(variable, vary), 0, 0, NULL, "", hf_vary_word},
     {"range", HF_FIELD_AMOUNT, IN(variable, range), HF_ABOVE_ZERO, BIG, "", "", NULL},
     {"bounds", HF_FIELD_BOUNDS, IN(variable, lower), -BIG, BIG, "", "", NULL},
@@ -181,7 +181,7 @@ static const hf_field variable_field[] = {
 
 static const hf_field objective_field[] = {
     {"figure", HF_FIELD_WORD, IN(objective, figure), 0, 0, NULL, "", hf_figure_kind_word},
-    {"set", HF_FIELD_TEXT, IN(objective, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
+    {"set", HF_FIELD_SET, IN(objective, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
     {"target", HF_FIELD_DOUBLE, IN(objective, target), -BIG, BIG, "", "", NULL},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(objective, mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL},
     {"along", HF_FIELD_WORD, IN(objective, along), 0, 0, "normal", "", HF_WORDS("normal", "half_path")},
@@ -197,12 +197,12 @@ static const hf_field objective_field[] = {
 _Static_assert(IN(limit, upper) == IN(limit, lower) + sizeof(double), "bounds are bounds");
 static const hf_field limit_field[] = {
     {"figure", HF_FIELD_WORD, IN(limit, figure), 0, 0, NULL, "", hf_limit_word},
-    {"set", HF_FIELD_TEXT, IN(limit, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
+    {"set", HF_FIELD_SET, IN(limit, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
     {"bounds", HF_FIELD_BOUNDS, IN(limit, lower), -BIG, BIG, NULL, "", NULL},
 };
 
 static const hf_field cable_field[] = {
-    {"set", HF_FIELD_TEXT, IN(cable, set), 1, HF_SET_NAME_SIZE, "all", "", NULL},
+    {"set", HF_FIELD_SET, IN(cable, set), 1, HF_SET_NAME_SIZE, "all", "", NULL},
     {"expansion_per_K", HF_FIELD_DOUBLE, IN(cable, expansion_per_K), -1, 1, "", "1/K", NULL},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(cable, mass_kg_per_m), 0, 1e6, "", "kg/m", NULL},
 };
@@ -214,7 +214,7 @@ static const hf_field node_field[] = {
 
 static const hf_field load_case_field[] = {
     {"name", HF_FIELD_TEXT, IN(load_case, name), 1, HF_SET_NAME_SIZE, NULL, "", NULL},
-    {"set", HF_FIELD_TEXT, IN(load_case, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
+    {"set", HF_FIELD_SET, IN(load_case, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
     {"part", HF_FIELD_WORD, IN(load_case, part), 0, 0, "all", "", hf_part_word},
     {"temperature_K", HF_FIELD_DOUBLE, IN(load_case, temperature_K), -1e4, 1e4, "", "K", NULL},
     {"gradient_K_per_m", HF_FIELD_VECTOR, IN(load_case, gradient_K_per_m), -1e4, 1e4, "", "K/m", NULL},
@@ -238,7 +238,7 @@ static const hf_field require_field[] = {
 
 static const hf_field requirement_field[] = {
     {"figure", HF_FIELD_WORD, IN(requirement, figure), 0, 0, NULL, "", hf_required_figure_word},
-    {"set", HF_FIELD_TEXT, IN(requirement, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
+    {"set", HF_FIELD_SET, IN(requirement, set), 1, HF_SET_NAME_SIZE, "", "", NULL},
     {"feed", HF_FIELD_WORD, IN(requirement, feed), 0, 0, "refocused", "", hf_focus_word},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(requirement, frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL},
     {"load_case", HF_FIELD_TEXT, IN(requirement, load_case), 1, HF_SET_NAME_SIZE, "nominal", "", NULL},
@@ -286,6 +286,7 @@ static bool is_same(const hf_field *f, const char *a, const char *b)
     const hf_double_list *p = (const void *)a, *q = (const void *)b;
     switch (f->type) { /* no default label, so that the compiler reports a type without a comparison */
     case HF_FIELD_TEXT:
+    case HF_FIELD_SET:
         return !strcmp(a, b);
     case HF_FIELD_DOUBLE:
         return !memcmp(a, b, sizeof(double));

@@ -284,6 +284,28 @@ static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, void
     if (!hf_path_beside(beside, hf_config_text(node), to, size)) refuse(s, node, f, "is too long", "");
 }
 
+/* Joins the names of a list of sets by +, for hf_cable_pick. */
+static void set_sets(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
+{
+    char *joined = to, what[80];
+    if (n_item(node) < 1) {
+        set_text(s, node, f, to);
+        return;
+    }
+    *joined = '\0';
+    for (int i = 0; i < n_item(node); i++) {
+        const yaml_node_t *name = item_of(s, node, i);
+        snprintf(what, sizeof what, "the names must have at most %d letters together", (int)f->max - 1);
+        if (name->type != YAML_SCALAR_NODE || !*hf_config_text(name))
+            refuse(s, name, f, "must be a list of names, like [front, rear]", "");
+        else if (!hf_text_append(joined, (size_t)f->max, "+", hf_config_text(name), ""))
+            refuse(s, name, f, what, "");
+        else
+            continue;
+        return;
+    }
+}
+
 void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node, const hf_field *f,
                      const char *case_path, void *to)
 {
@@ -291,7 +313,7 @@ void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const 
         [HF_FIELD_DOUBLE] = set_double, [HF_FIELD_DOUBLE_LIST] = set_list, [HF_FIELD_AMOUNT] = set_amount,
         [HF_FIELD_BOUNDS] = set_bounds, [HF_FIELD_VECTOR] = set_vector,    [HF_FIELD_UINT64] = set_uint64,
         [HF_FIELD_INT] = set_int,       [HF_FIELD_INT_PAIR] = set_pair,    [HF_FIELD_WORD] = set_word,
-        [HF_FIELD_TEXT] = set_text,
+        [HF_FIELD_TEXT] = set_text,     [HF_FIELD_SET] = set_sets,
     };
     setter s = {faults, document, case_path};
     set[f->type](&s, node, f, to);

@@ -161,8 +161,9 @@ static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, 
         to = now;
         if (!strcmp(to, key)) canonical = value; /* over: states becomes another key, and the axis keeps its word */
     }
-    bool fits = axis->key.field->type != HF_FIELD_TEXT ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
-                                                       : quote(r, axis->key.field, value, text);
+    hf_field_type type = axis->key.field->type;
+    bool fits = type != HF_FIELD_TEXT && type != HF_FIELD_SET ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
+                                                              : quote(r, axis->key.field, value, text);
     bool is_one_line = !strchr(value, '\n');
     hf_status status = fits && is_one_line ? HF_OK : HF_BAD_CASE;
     if (status == HF_OK && to == key && !hf_config_is_in_range(axis->key.field, text)) {
@@ -260,8 +261,8 @@ static void read_range(reader *r, hf_study_axis *axis, const yaml_node_t *mappin
     bool given[2] = {false, false}, failed_before = r->failed;
     to->mark = mapping->start_mark;
     to->is_faulty = true;
-    if (type == HF_FIELD_WORD || type == HF_FIELD_TEXT || type == HF_FIELD_INT_PAIR || type == HF_FIELD_BOUNDS ||
-        type == HF_FIELD_VECTOR) {
+    if (type == HF_FIELD_WORD || type == HF_FIELD_TEXT || type == HF_FIELD_SET || type == HF_FIELD_INT_PAIR ||
+        type == HF_FIELD_BOUNDS || type == HF_FIELD_VECTOR) {
         fault(r, to->mark, path, "is no number, so it needs a list of values");
         return;
     }

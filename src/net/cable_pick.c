@@ -7,23 +7,42 @@
 
 static const char *const all_word = "all";
 
-int hf_cable_pick(const hf_scene *s, const char *set, int *cable)
+const char *hf_cable_pick_name(const char *sets, char name[HF_SET_NAME_SIZE])
 {
-    int n = 0, group = 2;
-    if (!strcmp(set, hf_group_word[HF_GROUP_INNER])) group = HF_GROUP_INNER;
-    if (!strcmp(set, hf_group_word[HF_GROUP_BOUNDARY])) group = HF_GROUP_BOUNDARY;
-    if (group < 2 || !*set || !strcmp(set, all_word)) {
-        for (int e = 0; e < s->n_cable; e++) {
-            if (group < 2 && s->group[e] != group) continue;
-            if (cable) cable[n] = e;
-            n++;
-        }
-        return n;
+    size_t n = strcspn(sets, "+");
+    snprintf(name, HF_SET_NAME_SIZE, "%.*s", (int)n, sets);
+    return sets[n] ? sets + n + 1 : NULL;
+}
+
+/* Returns the index of the set with this name. Behind the sets are the groups, and then all cables. -1: none. */
+static int find(const hf_scene *s, const char *name)
+{
+    for (int group = 0; group < 2; group++)
+        if (!strcmp(name, hf_group_word[group])) return s->n_set + group;
+    return !*name || !strcmp(name, all_word) ? s->n_set + 2 : hf_cable_set_find(s, name);
+}
+
+static bool has(const hf_scene *s, int set, int e)
+{
+    if (set < s->n_set) return hf_cable_set_has(s, set, e);
+    return set == s->n_set + 2 || s->group[e] == set - s->n_set;
+}
+
+int hf_cable_pick(const hf_scene *s, const char *sets, int *cable)
+{
+    char name[HF_SET_NAME_SIZE];
+    int set[HF_SET_NAME_SIZE], n_set = 0, n = 0;
+    while (sets && n_set < HF_SET_NAME_SIZE) {
+        sets = hf_cable_pick_name(sets, name);
+        set[n_set] = find(s, name);
+        if (set[n_set++] < 0) return -1;
     }
-    int k = hf_cable_set_find(s, set);
-    if (k < 0) return -1;
-    n = s->set_start[k + 1] - s->set_start[k];
-    if (cable) memcpy(cable, s->set_cable + s->set_start[k], (size_t)n * sizeof *cable);
+    for (int e = 0; e < s->n_cable; e++) {
+        int k = 0;
+        while (k < n_set && !has(s, set[k], e))
+            k++;
+        if (k < n_set) cable[n++] = e;
+    }
     return n;
 }
 
@@ -44,16 +63,20 @@ int hf_cable_pick_some(const hf_scene *s, const char *set, const char *where, in
 {
     int n = hf_cable_pick(s, set, cable);
     if (n > 0) return n;
-    char sets[532] = "all, inner, boundary";
-    const char *near = nearest_set(s, set);
+    char sets[532] = "all, inner, boundary", name[HF_SET_NAME_SIZE];
+    const char *rest = set;
+    do /* the first unknown name */
+        rest = hf_cable_pick_name(rest, name);
+    while (rest && find(s, name) >= 0);
+    const char *near = nearest_set(s, name);
     for (int k = 0; k < s->n_set && hf_text_append(sets, sizeof sets, ", ", s->set_name[k], ", ..."); k++)
         continue;
     if (n == 0)
         hf_error(messages, HF_BAD_CASE, "%s: this net has no %s cables", where, set);
     else if (near)
-        hf_error(messages, HF_BAD_CASE, "%s: this net has no cable set '%s'; did you mean '%s'?", where, set, near);
+        hf_error(messages, HF_BAD_CASE, "%s: this net has no cable set '%s'; did you mean '%s'?", where, name, near);
     else
-        hf_error(messages, HF_BAD_CASE, "%s: this net has no cable set '%s'. The sets of this net are %s", where, set,
+        hf_error(messages, HF_BAD_CASE, "%s: this net has no cable set '%s'. The sets of this net are %s", where, name,
                  sets);
     return 0;
 }

@@ -1,11 +1,14 @@
-/* cable_pick - selects the cables that a row of a case file refers to (a named set of the scene, or `inner`,
+/* cable_pick - selects the cables that a row of a case file refers to (named sets of the scene, or `inner`,
  * `boundary`, `all`), and checks that cables have an EA. */
 #pragma once
 
 #include <hifdm/cable_set.h>
 
-/* Writes the cables of the set with this name, ascending, into `cable` [n_cable], which may be NULL. "" means all
- * cables. Returns their number, or -1 if the scene has no such set. */
+/* Copies the first of several names of sets, which are joined by +. Returns the names behind it, NULL: none. */
+const char *hf_cable_pick_name(const char *sets, char name[HF_SET_NAME_SIZE]);
+
+/* Writes the cables of a set, ascending, into `cable` [n_cable]. The name "" means all cables, and several names joined
+ * by + mean the cables of any of these sets. Returns their number, or -1 if the scene does not have all of the sets. */
 int hf_cable_pick(const hf_scene *scene, const char *set, int *cable);
 
 /* Selects the cables of a set like hf_cable_pick, for a row of a case that needs at least one cable. Returns the number

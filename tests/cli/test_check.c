@@ -180,7 +180,7 @@ START_TEST(schema_is_yaml_with_every_key)
     OUT("  # EA_inner_N:\n");
     OUT("  # strip_width_m:\n");
     OUT("# number > 0, <= 1000000000; N\n");
-    OUT("\n  # up to 16 rows {key: value, ...} of these keys:\n  #   set: text; required.\n");
+    OUT("\n  # up to 16 rows {key: value, ...} of these keys:\n  #   set: text or list of texts; required.\n");
     OUT("\n  #   range: number > 0, or a part like 30 %; may be left out.\n");
     OUT("\n  #   bounds: [low, high], of which one may be null; required.\n");
     OUT("\n  #   target: number; may be left out.\n");

@@ -267,6 +267,57 @@ START_TEST(a_run_without_a_design_names_the_row)
 }
 END_TEST
 
+/* A row for several sets has the worst cable of any of them, and each order of the names has its own data sets. */
+START_TEST(a_row_for_several_sets_is_about_their_union)
+{
+    const char *c = file_with("c.yaml",
+                              formatted(BUILT_SCENE TOLERANCE ROWS
+                                        "  - {figure: tension, set: [directrix, edge], at_least: 1}\n"
+                                        "  - {figure: tension, set: directrix, at_least: 1}\n"
+                                        "  - {figure: tension, set: edge, at_least: 1}\n"
+                                        "  - {figure: ratio, set: [edge, inner, directrix], at_most: 9}\n"
+                                        "  - {figure: tension, set: [edge, directrix], at_least: 1, share: 0.5}\n"
+                                        "  - {figure: tension, set: [directrix, edge], at_least: 1, share: 0.9}\n"
+                                        "  - {figure: tension, set: directrix, at_least: 1, share: 0.5}\n"
+                                        "  - {figure: tension, set: edge, at_least: 1, share: 0.5}\n",
+                                        50)),
+               *path = temp("a.h5");
+    HIFDM(0, "run", c, "-o", path, "--json");
+    EXPECT(out_as("a.json"), path, "--", "[r['set'] for r in a['requirements']][:1] == ['directrix+edge']",
+           "a['requirements'][0]['value'] == min(r['value'] for r in a['requirements'][1:3])",
+           "a['requirements'][0]['worst_item'] in [r['worst_item'] for r in a['requirements'][1:3]]",
+           "[r['value'] for r in a['requirements'][1:3]] != [a['requirements'][0]['value']] * 2",
+           "(b['tolerance/load_case/nominal/tension_min_directrix+edge'][:] == "
+           "np.minimum(b['tolerance/load_case/nominal/tension_min_directrix'][:], "
+           "b['tolerance/load_case/nominal/tension_min_edge'][:])).all()",
+           "(b['tolerance/load_case/nominal/tension_min_edge+directrix'][:] == "
+           "b['tolerance/load_case/nominal/tension_min_directrix+edge'][:]).all()");
+    OUT("\"figure\": \"ratio\", \"set\": \"edge+inner+directrix\"");
+    HIFDM(0, "report", path, "-o", temp("a.html"));
+    EXPECT(temp("a.html"), "--", "a.count(b'\"bound\":\"at_least\"') == 4"); /* a curve of each share */
+    HIFDM(0, "check", c, "--set", "optimize.limits=[{figure: ratio, set: [directrix, edge], bounds: [1, 9]}]", "--set",
+          "optimize.objective=[{figure: evenness, set: [directrix, edge]}]", "--set",
+          "optimize.variables=[{set: [directrix, edge], vary: tension, range: 1}]");
+    OUT("variables.0: tension of directrix+edge: ");
+    OUT("objective.0: evenness of directrix+edge, ");
+    OUT("limits.0: ratio of directrix+edge, bounds 1 .. 9");
+    static const char *const fault[][2] = {{"[edge, edg]", "this net has no cable set 'edg'; did you mean 'edge'?"},
+                                           {"[edge, [inner]]", "must be a list of names, like [front, rear]"},
+                                           {"[]", "must be a text"},
+                                           {"{}", "must be a text"},
+                                           {"[edge, '']", "must be a list of names, like [front, rear]"},
+                                           {"[edge, ed ge]", "must be made of letters, digits, _ and -"},
+                                           {"edge+", "must be made of letters, digits, _ and -"},
+                                           {"[an_abundance_of_words_without_a_meaning, as_long_as_a_name_may_be]",
+                                            "the names must have at most 63 letters together"}};
+    for (size_t k = 0; k < sizeof fault / sizeof *fault; k++) {
+        HIFDM(2, "check", c, "--set", formatted("requirements.0.set=%s", fault[k][0]));
+        ERRS("requirements.0.set: %s", fault[k][1]);
+        ck_assert_msg(count_of(said.err, "error: ") == 1, "%s", said.err);
+    }
+}
+END_TEST
+
 /* ---- verdicts ---- */
 
 #define MIXED                                                                                                          \
@@ -795,6 +846,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, rows_that_differ_are_accepted);
     tcase_add_test(tests, check_counts_the_rows_that_constrain);
     tcase_add_test(tests, a_run_without_a_design_names_the_row);
+    tcase_add_test(tests, a_row_for_several_sets_is_about_their_union);
     tcase_add_test(tests, a_run_begins_with_its_verdict);
     tcase_add_test(tests, json_and_file_have_all_rows);
     tcase_add_test(tests, a_bound_at_the_value_is_undecided);

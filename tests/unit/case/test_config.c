@@ -282,6 +282,7 @@ static bool change(const hf_field *field, int way, void *to)
         if (way < 3) ((double *)to)[way] = 7;
         return way < 3;
     case HF_FIELD_TEXT:
+    case HF_FIELD_SET:
         strcpy(to, way ? "b" : "");
         return way < 2;
     case HF_FIELD_DOUBLE_LIST:
@@ -304,7 +305,7 @@ START_TEST(a_difference_in_any_key_is_named)
         void *in_a = (char *)&a + field->offset, *in_b = (char *)&b + field->offset;
         if (field->type == HF_FIELD_DOUBLE_LIST)
             *(hf_double_list *)in_a = (hf_double_list){8, {1, 2, 3, 4, 5, 6, 7, 8}};
-        if (field->type == HF_FIELD_TEXT) strcpy(in_a, "a");
+        if (field->type == HF_FIELD_TEXT || field->type == HF_FIELD_SET) strcpy(in_a, "a");
         int way = 0;
         for (b = a; change(field, way, in_b); b = a, way++) {
             ck_assert_msg(hf_config_differences(&a, &b, text, sizeof text) == 1, "%s, change %d: '%s'", field->path,
