@@ -177,7 +177,7 @@ static void print_constraints(const hf_problem *p, FILE *f)
         snprintf(reason, sizeof reason, "requirements.%d (%s)", i,
                  r->search == HF_SEARCH_OFF       ? "search: off"
                  : r->figure == HF_REQUIRED_SLACK ? "slack_cables without at_most"
-                                                  : hf_required_figure_word[r->figure]);
+                                                  : "loose_nodes never constrains");
         hf_text_append(others, sizeof others, ", ", reason, "");
     }
     if (c->n_requirement)

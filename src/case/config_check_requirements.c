@@ -4,6 +4,7 @@
 #include "case/config_check.h"
 
 #include "base/text.h"
+#include "net/cable_pick.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -95,15 +96,28 @@ static bool is_same_quantity(const hf_case *c, const hf_requirement_settings *a,
            (!has_frequency || frequency_of(c, a) == frequency_of(c, b));
 }
 
-static bool is_of_all(const hf_requirement_settings *r)
+/* Returns whether the names `sets` contain all cables, or this one name. */
+static bool has_set(const char *sets, const char *of)
 {
-    return r->figure == HF_REQUIRED_TENSION && (!*r->set || !strcmp(r->set, "all"));
+    char name[HF_SET_NAME_SIZE];
+    bool has = !*sets;
+    for (const char *rest = sets; rest && *rest && !has;) {
+        rest = hf_cable_pick_name(rest, name);
+        has = !strcmp(name, of) || !strcmp(name, "all");
+    }
+    return has;
 }
 
-/* Returns whether both rows bound the tension of the same cables, because one row is about all cables. */
+/* Returns whether both rows bound the tension of a set that both name, or one of them is about all cables. */
 static bool shares_cables(const hf_requirement_settings *a, const hf_requirement_settings *b)
 {
-    return a->figure == b->figure && (is_of_all(a) || is_of_all(b));
+    char name[HF_SET_NAME_SIZE];
+    bool shares = !*a->set;
+    for (const char *rest = a->set; rest && *rest && !shares;) {
+        rest = hf_cable_pick_name(rest, name);
+        shares = !strcmp(name, "all") || has_set(b->set, name);
+    }
+    return a->figure == HF_REQUIRED_TENSION && a->figure == b->figure && shares;
 }
 
 /* Reports a row that repeats an earlier one, or that excludes every value that an earlier one allows. */

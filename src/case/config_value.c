@@ -288,22 +288,30 @@ static void set_text(setter *s, const yaml_node_t *node, const hf_field *f, void
 static void set_sets(setter *s, const yaml_node_t *node, const hf_field *f, void *to)
 {
     char *joined = to, what[80];
+    const char *last = "", *next;
     if (n_item(node) < 1) {
         set_text(s, node, f, to);
         return;
     }
     *joined = '\0';
-    for (int i = 0; i < n_item(node); i++) {
-        const yaml_node_t *name = item_of(s, node, i);
-        snprintf(what, sizeof what, "the names must have at most %d letters together", (int)f->max - 1);
-        if (name->type != YAML_SCALAR_NODE || !*hf_config_text(name))
-            refuse(s, name, f, "must be a list of names, like [front, rear]", "");
-        else if (!hf_text_append(joined, (size_t)f->max, "+", hf_config_text(name), ""))
-            refuse(s, name, f, what, "");
-        else
-            continue;
-        return;
-    }
+    for (int i = 0; i < n_item(node); i++)
+        if (item_of(s, node, i)->type != YAML_SCALAR_NODE || !*hf_config_text(item_of(s, node, i))) {
+            refuse(s, item_of(s, node, i), f, "must be a list of names, like [front, rear]", "");
+            return;
+        }
+    do {
+        next = NULL;
+        for (int i = 0; i < n_item(node); i++) {
+            const char *name = hf_config_text(item_of(s, node, i));
+            if (strcmp(name, last) > 0 && (!next || strcmp(name, next) < 0)) next = name;
+        }
+        if (next && !hf_text_append(joined, (size_t)f->max, "+", next, "")) {
+            snprintf(what, sizeof what, "the names must have at most %d letters together", (int)f->max - 1);
+            refuse(s, node, f, what, "");
+            return;
+        }
+        last = next;
+    } while (next);
 }
 
 void hf_config_value(hf_config_faults *faults, yaml_document_t *document, const yaml_node_t *node, const hf_field *f,

@@ -162,8 +162,9 @@ static void set_value(reader *r, hf_study_axis *axis, int k, const char *value, 
         if (!strcmp(to, key)) canonical = value; /* over: states becomes another key, and the axis keeps its word */
     }
     hf_field_type type = axis->key.field->type;
-    bool fits = type != HF_FIELD_TEXT && type != HF_FIELD_SET ? snprintf(text, sizeof text, "%s", value) < VALUE_SIZE
-                                                              : quote(r, axis->key.field, value, text);
+    bool is_text = type == HF_FIELD_TEXT || (type == HF_FIELD_SET && *value != '['); /* a list of sets is no text */
+    bool fits =
+        is_text ? quote(r, axis->key.field, value, text) : snprintf(text, sizeof text, "%s", value) < VALUE_SIZE;
     bool is_one_line = !strchr(value, '\n');
     hf_status status = fits && is_one_line ? HF_OK : HF_BAD_CASE;
     if (status == HF_OK && to == key && !hf_config_is_in_range(axis->key.field, text)) {

@@ -279,12 +279,18 @@ const char *hf_print_study_verdict(const hf_merged *m, int i, char text[HF_AXIS_
     return text;
 }
 
+/* Returns the SI unit of a requirement; "" if a file has a figure that this version does not know. */
+static const char *required_SI(const hf_merged *m, int row)
+{
+    hf_required_figure figure = hf_ledger_figure(hf_texts_at(&m->row_name, row));
+    return figure < HF_REQUIRED_N_FIGURE ? hf_required_figure_unit[figure] : "";
+}
+
 /* Returns the unit of a requirement for people. Sets *scale to the factor of its values. */
 static const char *required_unit(const hf_merged *m, int row, double *scale)
 {
-    hf_required_figure figure = hf_ledger_figure(hf_texts_at(&m->row_name, row));
-    const char *unit = figure < HF_REQUIRED_N_FIGURE ? hf_required_figure_unit[figure] : "";
-    *scale = hf_print_scale(unit, &unit);
+    const char *unit;
+    *scale = hf_print_scale(required_SI(m, row), &unit);
     return unit;
 }
 
@@ -336,8 +342,7 @@ static column required_column(const hf_merged *m, int row)
     if (isnan(at_least) && isnan(at_most)) /* an axis has the bounds */
         snprintf(c.unit, sizeof c.unit, "%s", unit);
     else
-        hf_print_bound(hf_required_figure_unit[hf_ledger_figure(hf_texts_at(&m->row_name, row))], at_least, at_most,
-                       c.unit);
+        hf_print_bound(required_SI(m, row), at_least, at_most, c.unit);
     return c;
 }
 

@@ -164,11 +164,11 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
     /* A count is judged by tensions. */
     const char *unit = r->figure == HF_REQUIRED_SLACK ? "N" : hf_required_figure_unit[r->figure];
     if (fabs(p->point.constraint[worst] / c->unit[worst] / HF_BUILT_NO_VALUE - 1) < 1e-9) {
-        snprintf(text, size, ": bound of requirements.%d (%.160s) is not met, because the figure has no value", row,
+        snprintf(text, size, ": bound of requirements.%d (%.160s) is missed, because the figure has no value", row,
                  hf_requirement_name(r, name, sizeof name));
         return text;
     }
-    snprintf(text, size, ": bound of requirements.%d (%.160s) is not met by %.3g%s%s", row,
+    snprintf(text, size, ": bound of requirements.%d (%.160s) is missed by %.3g%s%s", row,
              hf_requirement_name(r, name, sizeof name), p->point.constraint[worst], *unit ? " " : "", unit);
     return text;
 }

@@ -35,6 +35,7 @@
 #define RUZE_MOST_DB 3.0        /* maximum loss for which Ruze's formula holds */
 #define FACET_LOSS_MOST_DB 1.0  /* loss above which facets are too coarse for the surface (METHOD section 13) */
 #define PATTERN_TERMS_MOST 1e13 /* maximum terms of a far field at one frequency: hours on one core */
+#define SAME_VALUE 1e-12        /* relative rounding of a value that equals its bound */
 #define WAVELENGTHS_LEAST 5.0   /* minimum diameter of a reflector for physical optics */
 
 /* ---- from the case to the model ---- */
@@ -187,7 +188,7 @@ static void make_parts(hf_problem *p, const volatile sig_atomic_t *stop, hf_mate
     bool has_surface =
         hf_config_is_sound(c, "surface") && keep(hf_config_surface(c, &p->scene, &p->surface, messages), first);
     if (!has_surface) p->surface.focal_length_m = 0; /* other parts do without */
-    if (has_surface && c->has_surface) keep(find_facets(p, messages), first);
+    has_surface = has_surface && (!c->has_surface || keep(find_facets(p, messages), first));
     bool has_material = hf_config_is_read(c, "cables") && hf_config_is_sound(c, "nodes") &&
                         keep(hf_config_material(c, &p->scene, material, messages), first);
     keep(hf_requirements_stage_check(p, has_material ? material : NULL, messages), first);
@@ -410,7 +411,8 @@ static void warn_of_bounds(const hf_problem *p, hf_messages *messages)
         for (int k = 0; k < p->model.n_variable; k++) {
             if (p->model.variable[k].setting != i) continue;
             n++;
-            n_outside += p->initial[k] < row->lower || p->initial[k] > row->upper;
+            double rounding = SAME_VALUE * fabs(p->initial[k]);
+            n_outside += p->initial[k] < row->lower - rounding || p->initial[k] > row->upper + rounding;
             low = fmin(low, p->initial[k]);
             high = fmax(high, p->initial[k]);
             last = k;
@@ -419,7 +421,7 @@ static void warn_of_bounds(const hf_problem *p, hf_messages *messages)
         hf_config_place(&p->settings, where, "optimize.variables.%d.bounds", i);
         hf_warning(messages,
                    "%s: the search starts at another shape, because %d of %d values after form-finding are outside "
-                   "these bounds. The values are between %.4g and %.4g %s; widen the bounds to include them",
+                   "these bounds. The values are from %.4g to %.4g %s; widen the bounds to include them",
                    where, n_outside, n, low, high, hf_model_variable_unit(&p->model, last));
     }
 }

@@ -187,6 +187,7 @@ static hf_status return_to_form(hf_run *r, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
+    if (!hf_status_has_shape(p->form.status)) return p->form.status; /* only if it was told to stop */
     return hf_stage_take(r, &p->workspace, messages);
 }
 
@@ -206,7 +207,8 @@ static hf_status run_stages(hf_run *r, hf_summary *s, hf_messages *messages)
         status = return_to_form(r, messages);
     }
     if (status == HF_OK) status = failed;
-    bool is_unfinished = status == HF_INTERRUPTED || (r->has_design && is_of_machine(status));
+    bool is_found = r->has_design || failed != HF_OK; /* or none is */
+    bool is_unfinished = status == HF_INTERRUPTED || (is_found && is_of_machine(status));
     return is_unfinished ? end_unfinished(r, s, status, messages) : status;
 }
 

@@ -300,11 +300,12 @@ static bool scale_start(hf_refine_problem *p, double factor)
 }
 
 /* Returns how far the shape in the workspace is outside the limits or, below zero, its smallest relative margin. */
-static double distance_outside(hf_refine_problem *p)
+static double distance_outside(hf_refine_problem *p, bool *is_outside)
 {
     const hf_constraints *c = p->v.objectives->constraints;
     double margin = -INFINITY;
-    if (!hf_watch_keeps(&p->watch, p->w)) return hf_watch_violation(&p->watch, p->w);
+    *is_outside = !hf_watch_keeps(&p->watch, p->w);
+    if (*is_outside) return hf_watch_violation(&p->watch, p->w);
     for (int k = 0; k < c->n; k++)
         margin = fmax(margin, p->watch.constraint[k] / c->unit[k]);
     return margin;
@@ -316,18 +317,19 @@ static double distance_outside(hf_refine_problem *p)
 static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
 {
     double nearest = p->violation;
+    bool is_outside = true;
     r->iterations++;
     for (int sign = 1; sign >= -1 && nearest == p->violation; sign -= 2)
         for (int i = 1; i <= SCALES_MAX && scale_start(p, pow(SCALE_BY, sign * i)); i++) {
             hf_status status = hf_refine_evaluate(p, p->trial);
             if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
-            double distance = status == HF_OK ? distance_outside(p) : (double)INFINITY;
+            double distance = status == HF_OK ? distance_outside(p, &is_outside) : (double)INFINITY;
             if (distance > (nearest > 0 ? SCALE_WORSE * nearest : nearest)) break;
             if (!(distance < nearest)) continue;
             nearest = distance;
+            p->is_outside = is_outside;
             hf_refine_keep(p);
         }
-    p->is_outside = nearest >= 0;
     p->violation = fmax(0, nearest);
     HF_TRY(hf_refine_evaluate(p, p->at));
     r->merit = hf_refine_merit(p, &p->result);
@@ -472,7 +474,8 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
 {
     double gain = 0, converged = p->front ? FRONT_CONVERGED : GAIN_CONVERGED;
     hf_status status = hf_refine_evaluate(p, p->at);
-    if (status == HF_OK) status = hf_refine_linearise(p);
+    bool is_zero = !p->front && !p->is_outside && r->merit <= hf_refine_rounding(p);
+    if (status == HF_OK && !is_zero) status = hf_refine_linearise(p);
     if (status == HF_OK && p->front) {
         r->merit = hf_refine_merit(p, &p->result);
         p->is_outside = !hf_watch_keeps(&p->watch, p->w);
@@ -483,7 +486,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
     if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
     while (status == HF_OK && !p->is_outside && r->stop == HF_REFINE_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
-        if (!p->front && r->merit <= p->rounding) { /* a step would only follow the rounding */
+        if (!p->front && r->merit <= hf_refine_rounding(p)) { /* a step would only follow the rounding */
             r->stop = HF_REFINE_CONVERGED;
             HF_TRY(tell_watcher(p, r, max_iterations));
             break;

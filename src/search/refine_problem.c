@@ -178,8 +178,7 @@ static double find_noise(const hf_refine_problem *p)
     return p->v.form->residual_tolerance * sqrt(square);
 }
 
-/* Returns the part of the merit that is rounding of positions. Only objectives that are lengths have one. */
-static double find_rounding(const hf_refine_problem *p)
+double hf_refine_rounding(const hf_refine_problem *p)
 {
     const hf_objectives *objectives = p->v.objectives;
     double weight = objectives ? 0 : 1;
@@ -255,7 +254,6 @@ hf_status hf_refine_linearise(hf_refine_problem *p)
         p->largest_scale = fmax(p->largest_scale, p->scale[k]);
     }
     p->noise = find_noise(p);
-    p->rounding = find_rounding(p);
     if (p->front) linearise_front(p);
     if (hf_refine_n_constraint(p) > 0)
         HF_TRY(p->v.objectives->constraints->linearise(hf_residuals_point(&p->residuals)->constraints, p->n, spread,

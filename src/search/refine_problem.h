@@ -65,8 +65,7 @@ typedef struct {
     int settled_steps;                   /* steps since one promised much or changed the merit or an objective */
     double settled_merit, settled_objective[HF_DESIGN_ROWS_MAX]; /* merit and objectives at that step */
     size_t n_state;
-    double rounding; /* part of the merit that is rounding of positions */
-    double noise;    /* part of the merit that the tolerance of the form-finding leaves open */
+    double noise; /* part of the merit that the tolerance of the form-finding leaves open */
     void *block;
 } hf_refine_problem;
 
@@ -91,6 +90,9 @@ bool hf_refine_is_tension(const hf_refine_problem *problem, int k);
 /* Returns the merit of a result, or for a point of a front the value of the minimised objective (of a ratio its
  * logarithm). */
 double hf_refine_merit(const hf_refine_problem *problem, const hf_form_result *result);
+
+/* Returns the part of the merit that is rounding of positions. Only objectives that are lengths have one. */
+double hf_refine_rounding(const hf_refine_problem *problem);
 
 /* Evaluates the design at these steps [n] from `start`; its shape is in the workspace afterwards. Returns the status of
  * hf_evaluate. */

@@ -298,7 +298,8 @@ START_TEST(check_of_many_variables_is_quick)
                               "scene:\n  paraboloid: {aperture_m: 9, focal_length_m: 6, rings: 4, rear_distance_m: 2}\n"
                               "form: {pretension_N: 10, prestress: exact}\n"
                               "optimize:\n  method: lm\n"
-                              "  variables: [{set: all, vary: force_density, range: 50 %}]\n");
+                              "  variables: [{set: all, vary: force_density, range: 50 %}]\n"
+                              "  objective: [{figure: psi}, {figure: evenness, set: front, weight: 1e-4}]\n");
     HIFDM(0, "check", c);
     OUT(" a step; about ");
     OUT(" for 1 step (at most 200)");

@@ -3,8 +3,10 @@
 const LOW_PART = 0.05, // of the samples, below the range that the table shows
   HIGH_PART = 0.95;
 
-// Returns the cables of a set, which may be one of the groups; of all cables for "" and "all".
+// Returns the cables of a set, which may be one of the groups; of all cables for "" and "all". Several names are joined
+// by +.
 function cablesOf(name) {
+  if (name.includes("+")) return [...new Set(name.split("+").flatMap(cablesOf))];
   const found = net.sets.find((set) => set.name === name),
     all = Array.from({ length: net.n_cable }, (_, e) => e);
   return found ? Array.from(found.cable) : all.filter((e) => name === "" || name === "all" || groupOf(e) === name);
