@@ -17,14 +17,14 @@
     {                                                                                                                  \
         .figure = HF_FIGURE_MASS, .set = of_set, .target = NAN, .weight = 1, .mass_kg_per_m = kg_per_m                 \
     }
-#define WANT_ERROR(kind, by, of_fit, weighed)                                                                          \
+#define WANT_ERROR(kind, by, of_feed, weighed)                                                                         \
     {                                                                                                                  \
         .figure = HF_FIGURE_##kind, .target = NAN, .weight = weighed, .mass_kg_per_m = NAN, .along = HF_ALONG_##by,    \
-        .fit = HF_FIT_##of_fit                                                                                         \
+        .feed = HF_##of_feed                                                                                           \
     }
 #define WANT_ERRORS(kind, weighed)                                                                                     \
-    WANT_ERROR(kind, NORMAL, NONE, weighed), WANT_ERROR(kind, NORMAL, BEST, weighed),                                  \
-        WANT_ERROR(kind, HALF_PATH, NONE, weighed), WANT_ERROR(kind, HALF_PATH, BEST, weighed)
+    WANT_ERROR(kind, NORMAL, FIXED, weighed), WANT_ERROR(kind, NORMAL, REFOCUSED, weighed),                            \
+        WANT_ERROR(kind, HALF_PATH, FIXED, weighed), WANT_ERROR(kind, HALF_PATH, REFOCUSED, weighed)
 /* Eight rows: four for nodes, then four for facets. */
 #define WANT_SURFACES(weighed) WANT_ERRORS(SURFACE, weighed), WANT_ERRORS(FACETS, weighed)
 

@@ -80,8 +80,10 @@ typedef enum {
 } hf_figure_kind;
 /* Selects the direction in which the distance to a surface is measured. */
 typedef enum { HF_ALONG_NORMAL, HF_ALONG_HALF_PATH } hf_along;
-/* The distance is measured to the target surface or to its best fit to the shape. */
-typedef enum { HF_FIT_NONE, HF_FIT_BEST } hf_fit;
+/* A surface error or a radio figure belongs to one of two feeds. The refocused feed follows the best fit of the target
+ * surface to the shape in position, direction and focal length. The fixed feed remains where the target surface has
+ * it. */
+typedef enum { HF_REFOCUSED, HF_FIXED, HF_N_FOCUS } hf_focus;
 
 /* An objective is measured on the design or on samples of the errors of its as-built net. */
 typedef enum { HF_OVER_DESIGN, HF_OVER_SAMPLES } hf_over;
@@ -163,7 +165,7 @@ typedef struct {
     double weight; /* weight of the objective: merit = sqrt(sum (weight * value)^2) */
     double mass_kg_per_m; /* mass of the cables per length, for the figure mass */
     hf_along along;       /* direction of the distance, for the figures surface and facets */
-    hf_fit fit;           /* surface to which the distance is measured, for the figures surface and facets */
+    hf_focus feed;        /* feed of the figures surface and facets; refocused: distance from the best fit */
     char load_case[HF_SET_NAME_SIZE]; /* name of a load case; "all": all load cases; "": none */
     hf_over over;                     /* shapes on which the figure is measured if there is no load case */
     hf_take take;                     /* figure that combines several load cases or samples */
@@ -391,9 +393,6 @@ static inline bool hf_tolerance_is_warm(const hf_tolerance_settings *s)
     return s->sigma_temperature_K > 0 || s->sigma_load_case_temperature_K > 0;
 }
 
-/* A radio figure belongs to one of two feeds. The refocused feed follows the best fit of the target surface to the
- * shape in position, direction and focal length. The fixed feed remains where the target surface has it. */
-typedef enum { HF_REFOCUSED, HF_FIXED, HF_N_FOCUS } hf_focus;
 /* A row of `requirements` constrains the search, or is judged at the end of the run alone. */
 typedef enum { HF_SEARCH_ON, HF_SEARCH_OFF } hf_constrains;
 

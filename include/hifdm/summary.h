@@ -139,7 +139,7 @@ typedef struct {
     /* [n] name such as objective_1_tension_edge: number, figure, set */
     char name[HF_DESIGN_ROWS_MAX][HF_OBJECTIVE_NAME_SIZE];
     double weight[HF_DESIGN_ROWS_MAX]; /* [n] weights of the objectives */
-    /* [n] 1: surface figure after the best fit; 0: surface figure without fit; -1: other figure */
+    /* [n] 1: surface error for a refocused feed; 0: for a fixed feed; -1: other figure */
     int after_fit[HF_DESIGN_ROWS_MAX];
     bool is_front; /* true: the rows are those of optimize.front */
 } hf_objective_list;

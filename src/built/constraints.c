@@ -554,7 +554,7 @@ static hf_status make_clouds(constraints_room *r)
             r->cloud[k] = (hf_cloud){.kind = c->surface->kind,
                                      .focal_length_m = c->surface->focal_length_m,
                                      .along = HF_ALONG_HALF_PATH,
-                                     .fit = q->column[k].feed == HF_FIXED ? HF_FIT_NONE : HF_FIT_BEST,
+                                     .feed = q->column[k].feed,
                                      .n_node = c->model->n_node,
                                      .n = (int)count_points(c, k),
                                      .n_facet = is_facets ? c->n_facet : 0,

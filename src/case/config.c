@@ -163,22 +163,6 @@ static bool is_given_already(loader *l, const yaml_node_t *node, const hf_key *k
     return true;
 }
 
-/* Sets a key whose value is an old word. Returns false if it is none. */
-static bool set_old_word(loader *l, const yaml_node_t *node, const hf_key *key)
-{
-    char old[2 * HF_KEY_SIZE], now[HF_KEY_SIZE];
-    hf_key to;
-    if (key->field->type != HF_FIELD_WORD || node->type != YAML_SCALAR_NODE) return false;
-    snprintf(old, sizeof old, "%s=%s", key->path, hf_config_text(node));
-    if (!hf_config_rename(&l->faults, node->start_mark.line, node->start_mark.column, old, now)) return false;
-    char *word = strchr(now, '=');
-    *word++ = '\0';
-    if (!hf_key_find(now, &to) || is_given_already(l, node, &to)) return true;
-    with_document(l, word, strlen(word), use_default, &to);
-    set_location(l, node, to.i_location);
-    return true;
-}
-
 static void set_value(loader *l, const yaml_node_t *node, const hf_key *key)
 {
     hf_field field = *key->field;
@@ -186,7 +170,8 @@ static void set_value(loader *l, const yaml_node_t *node, const hf_key *key)
     hf_config_value(&l->faults, l->document, node, &field, l->c->path, (char *)l->c + key->offset);
 }
 
-static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
+/* Sets a key to the value of a node, or to the word that replaces it. */
+static void set_key(loader *l, const yaml_node_t *node, const hf_key *key, const char *word)
 {
     if (key->list && l->walked && key->row >= hf_key_n_row(l->c, key->list)) {
         char what[128];
@@ -195,9 +180,12 @@ static void set_key(loader *l, const yaml_node_t *node, const hf_key *key)
         complain(l, node->start_mark, key->path, what, "");
         return;
     }
-    if (is_given_already(l, node, key) || set_old_word(l, node, key)) return;
+    if (is_given_already(l, node, key)) return;
     set_location(l, node, key->i_location);
-    set_value(l, node, key);
+    if (word)
+        with_document(l, word, strlen(word), use_default, key);
+    else
+        set_value(l, node, key);
 }
 
 /* ---- walking the YAML tree ---- */
@@ -252,13 +240,20 @@ static void read_rows(loader *l, const yaml_node_t *node, const hf_list *list)
 
 static void take(loader *l, const yaml_node_t *value, yaml_mark_t key_mark, const char *prefix, const char *key)
 {
-    char given[HF_KEY_SIZE], path[HF_KEY_SIZE];
+    char given[HF_KEY_SIZE], old[2 * HF_KEY_SIZE], path[HF_KEY_SIZE], *word = NULL;
+    yaml_mark_t mark = value->start_mark;
     hf_key found;
     bool fits = snprintf(given, sizeof given, "%s%s%s", prefix, *prefix ? "." : "", key) < HF_KEY_SIZE;
-    hf_config_rename(&l->faults, key_mark.line, key_mark.column, given, path);
+    if (value->type == YAML_SCALAR_NODE) snprintf(old, sizeof old, "%s=%s", given, hf_config_text(value));
+    if (value->type == YAML_SCALAR_NODE && hf_config_rename(&l->faults, mark.line, mark.column, old, path)) {
+        word = strchr(path, '=');
+        *word++ = '\0';
+    } else {
+        hf_config_rename(&l->faults, key_mark.line, key_mark.column, given, path);
+    }
     const hf_list *list = fits ? hf_key_find_list(path) : NULL;
     if (fits && hf_key_find(path, &found) && found.field) {
-        set_key(l, value, &found);
+        set_key(l, value, &found, word);
     } else if (list) {
         read_rows(l, value, list);
     } else if (!strcmp(path, "sweep") && !l->faults.is_override) {
@@ -414,7 +409,7 @@ static void use_override(loader *l, const yaml_node_t *root, const void *context
 {
     char path[HF_KEY_SIZE];
     yaml_mark_t start = {0};
-    hf_config_rename(&l->faults, 0, 0, context, path);
+    snprintf(path, sizeof path, "%s", (const char *)context);
     char *dot = strrchr(path, '.');
     if (!root) {
         complain(l, start, path, "there is no value after the '='", "");

@@ -273,7 +273,7 @@ static void check_objectives(const char *list, int n_objective, const hf_objecti
                {"target", 1u << HF_FIGURE_TENSION | 1u << HF_FIGURE_LENGTH},
                {"mass_kg_per_m", 1u << HF_FIGURE_MASS},
                {"along", SURFACES},
-               {"fit", SURFACES},
+               {"feed", SURFACES},
                {"frequency_Hz", 1u << HF_FIGURE_GAIN}};
     char what[HF_CONFIG_WHAT_SIZE];
     for (int i = 0; i < n_objective; i++) {

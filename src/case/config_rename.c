@@ -15,18 +15,24 @@ static const char *const renamed[][2] = {
     {"load_cases[].move_m", "load_cases[].support_displacement_m"},
     {"optimize.compare_lm", "optimize.refine"},
     {"optimize.goals", "optimize.objective"},
+    {"optimize.objective[].fit", "optimize.objective[].feed"},
     {"optimize.objective[].goal", "optimize.objective[].figure"},
     {"optimize.objective[].state", "optimize.objective[].load_case"},
     {"optimize.limits[].limit", "optimize.limits[].figure"},
     {"optimize.objectives", "optimize.front"},
+    {"optimize.front[].fit", "optimize.front[].feed"},
     {"optimize.front[].goal", "optimize.front[].figure"},
     {"optimize.front[].state", "optimize.front[].load_case"},
     {"optimize.polish_iterations", "optimize.refine_steps"},
 
     {"adjust.aim=theory", "adjust.aim=target_positions"},
+    {"optimize.objective[].feed=best", "optimize.objective[].feed=refocused"},
+    {"optimize.objective[].feed=none", "optimize.objective[].feed=fixed"},
     {"optimize.objective[].figure=displacement", "optimize.objective[].figure=deflection"},
     {"optimize.objective[].over=states", "optimize.objective[].load_case=all"},
     {"optimize.limits[].figure=displacement", "optimize.limits[].figure=deflection"},
+    {"optimize.front[].feed=best", "optimize.front[].feed=refocused"},
+    {"optimize.front[].feed=none", "optimize.front[].feed=fixed"},
     {"optimize.front[].figure=displacement", "optimize.front[].figure=deflection"},
     {"optimize.front[].over=states", "optimize.front[].load_case=all"},
 };
@@ -69,10 +75,10 @@ static void warn_once(hf_config_faults *f, const char *what)
 bool hf_config_rename(hf_config_faults *f, size_t line, size_t column, const char *old, char now[HF_KEY_SIZE])
 {
     char where[48] = "", what[2 * HF_PATH_SIZE];
-    bool is_old = false;
+    bool has_word = strchr(old, '='), is_old = false;
     snprintf(now, HF_KEY_SIZE, "%s", old);
     for (size_t i = 0; i < sizeof renamed / sizeof *renamed; i++)
-        is_old |= replace(renamed[i][0], renamed[i][1], now);
+        if (replace(renamed[i][0], renamed[i][1], now)) is_old |= !has_word || strchr(renamed[i][1], '=');
     if (!is_old) return false;
     if (!f->location && !f->is_override) snprintf(where, sizeof where, ":%zu:%zu", line + 1, column + 1);
     snprintf(what, sizeof what, "%s%s%s: %s is now %s: rename it, because version 0.4 refuses the old name",

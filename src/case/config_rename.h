@@ -4,8 +4,8 @@
 #include "case/config_fault.h"
 
 /* Writes the new name of a key, "optimize.goals.0.goal", or of a key with its word, "adjust.aim=theory", into `now`.
- * If `old` is an old name, warns once with the line and the column, counted from 0, and returns true. Otherwise `now`
- * is a copy. */
+ * If `old` is an old name, warns once with the line and the column, counted from 0, and returns true. A key with its
+ * word is old only if the word is old, so that both together cause one warning. */
 bool hf_config_rename(hf_config_faults *faults, size_t line, size_t column, const char *old, char now[HF_KEY_SIZE]);
 
 /* The measures of tolerance.require as X(word, figure, feed, is_ruze). A loss by Ruze's formula becomes a

@@ -394,7 +394,7 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
                 s->surface.frequencies_Hz.value[k] / 1e9);
     else
         fprintf(f, "%g dB gain loss at %.3g GHz", HF_SURFACE_GOOD_TO_DB, before_Hz / 1e9);
-    fprintf(f, ". To minimise this error, use {figure: %s, fit: best} and {figure: psi, weight: 0.3}\n",
+    fprintf(f, ". To minimise this error, use {figure: %s, feed: refocused} and {figure: psi, weight: 0.3}\n",
             has_facets ? "facets" : "surface");
 }
 

@@ -125,7 +125,7 @@ static hf_status make_objectives(const hf_adjust_case *j, const hf_built *b, hf_
 {
     const hf_problem *p = &j->problem;
     hf_optimize_settings wanted = {.n_term = 1};
-    wanted.term[0] = (hf_objective_settings){.figure = figure, .weight = 1};
+    wanted.term[0] = (hf_objective_settings){.figure = figure, .feed = HF_FIXED, .weight = 1};
     return hf_objectives_create(&b->scene, &b->model, &wanted, &p->surface, &p->facets, NULL, objectives, messages);
 }
 

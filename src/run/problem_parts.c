@@ -288,7 +288,7 @@ void hf_problem_describe(const hf_problem *p, hf_summary *s)
         hf_objectives_name(&p->objectives, k, s->objectives.name[k]);
         s->objectives.weight[k] = wanted->weight;
         bool of_surface = wanted->figure == HF_FIGURE_SURFACE || wanted->figure == HF_FIGURE_FACETS;
-        s->objectives.after_fit[k] = !of_surface ? -1 : wanted->fit == HF_FIT_BEST;
+        s->objectives.after_fit[k] = !of_surface ? -1 : wanted->feed == HF_REFOCUSED;
     }
     s->taken = settings->taken;
     s->has_truss = settings->has_truss;

@@ -46,7 +46,7 @@ static void lay_out_cloud(hf_arena *a, const hf_objectives *objectives, int k, h
     *cloud = (hf_cloud){.kind = objectives->kind,
                         .focal_length_m = objectives->focal_length_m,
                         .along = is->along,
-                        .fit = is->fit,
+                        .feed = is->feed,
                         .n_node = objectives->model->n_node,
                         .n = objectives->objective[k].n_shape_row,
                         .n_facet = has_facets ? objectives->n_facet : 0,

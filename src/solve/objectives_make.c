@@ -55,8 +55,8 @@ static const char *fault_of(const hf_objectives *objectives, int k, const hf_sur
         return "needs a section surface.pattern with the feed of the reflector";
     if (is_of_facets(s->figure) && (!facets || facets->n_facet == 0)) return "this net has no facets";
     if (s->figure == HF_FIGURE_GAIN && objectives->beam[k].order == HF_GAIN_ORDER_MOST) return HF_GAIN_TOO_COARSE;
-    if (s->figure == HF_FIGURE_SURFACE && s->fit == HF_FIT_BEST && m->n_inner_node < HF_FIT_N_PARAMETER)
-        return "a best fit needs at least six inner nodes";
+    if (s->figure == HF_FIGURE_SURFACE && s->feed == HF_REFOCUSED && m->n_inner_node < HF_FIT_N_PARAMETER)
+        return "a refocused feed needs at least six inner nodes; use feed: fixed";
     if (s->figure == HF_FIGURE_TENSION && isnan(s->target)) return "needs a target, in N";
     if (s->figure == HF_FIGURE_MASS && !(s->mass_kg_per_m > 0)) return "needs mass_kg_per_m of the cables of its set";
     if (s->figure == HF_FIGURE_EVENNESS && g->n_cable == 1)

@@ -253,8 +253,8 @@ static void pass_lists(hf_hdf5 *io, bool writes, hf_stage_summary *s, int stage)
 #define OBJECTIVE(name, member, kind, description)                                                                     \
     HF_LAYOUT_FIELD(hf_objective_list, name, member, kind, "", description)
 static const hf_layout_field objective_names[] = {OBJECTIVE("name", name, CHARS, "number, figure and set")};
-static const hf_layout_field objective_fits[] = {
-    OBJECTIVE("after_fit", after_fit, INT, "1: of the surface after its best fit, 0: as it stands, -1: other figures")};
+static const hf_layout_field objective_fits[] = {OBJECTIVE(
+    "after_fit", after_fit, INT, "1: surface error for a refocused feed, 0: for a fixed feed, -1: other figure")};
 static const hf_layout_field objective_weights[] = {OBJECTIVE("weight", weight, REAL, "of the value in the merit")};
 
 const double *hf_layout_objectives(const hf_summary *s, int stage)

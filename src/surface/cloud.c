@@ -36,7 +36,7 @@ int hf_cloud_facet_points(int n_facet)
 
 void hf_cloud_lay_out(hf_arena *arena, hf_cloud *to)
 {
-    size_t n = (size_t)to->n, n_area = to->n_facet > 0 ? n : 0, n_fit = to->fit == HF_FIT_BEST ? n : 0;
+    size_t n = (size_t)to->n, n_area = to->n_facet > 0 ? n : 0, n_fit = to->feed == HF_REFOCUSED ? n : 0;
     HF_CLOUD_FIELDS(HF_ARENA_TAKE)
     to->pose.slope = hf_arena_take(arena, N_MOST * n_fit, sizeof(double));
     to->pose.slope_center = hf_arena_take(arena, 3 * n_fit, sizeof(double));
@@ -280,7 +280,7 @@ static void fit_push(hf_cloud *c, double *rate)
 hf_status hf_cloud_measure(hf_cloud *c, const double *position_m, double *residual)
 {
     take_points(c, position_m);
-    if (c->fit == HF_FIT_BEST)
+    if (c->feed == HF_REFOCUSED)
         HF_TRY(fit_measure(c));
     else
         take_errors(c);
@@ -291,7 +291,7 @@ hf_status hf_cloud_measure(hf_cloud *c, const double *position_m, double *residu
 
 hf_status hf_cloud_linearise(hf_cloud *c)
 {
-    return c->fit == HF_FIT_BEST ? fit_linearise(c) : HF_OK;
+    return c->feed == HF_REFOCUSED ? fit_linearise(c) : HF_OK;
 }
 
 /* Computes rate [n], the rates of the errors. */
@@ -307,7 +307,7 @@ static void push_errors(const hf_cloud *c, double *rate)
 void hf_cloud_push(hf_cloud *c, const double *move, double *rate)
 {
     double grow_m2 = take_moves(c, move);
-    if (c->fit == HF_FIT_BEST)
+    if (c->feed == HF_REFOCUSED)
         fit_push(c, rate);
     else
         push_errors(c, rate);

@@ -38,11 +38,11 @@ typedef struct hf_cloud {
     hf_surface_kind kind;
     double focal_length_m;
     hf_along along;
-    hf_fit fit;
+    hf_focus feed;
     int n_node;         /* nodes of the model */
     int n, n_facet;     /* points, with one residual each; facets, or 0 if the points are nodes */
     const int *row;     /* rows of the nodes [n], or of the corners [n_facet][4]; borrowed */
-    hf_cloud_pose pose; /* used only with fit: best */
+    hf_cloud_pose pose; /* used only for a refocused feed */
     double area_m2;     /* area of all facets, if there are any */
     HF_CLOUD_FIELDS(HF_ARENA_MEMBER)
 } hf_cloud;

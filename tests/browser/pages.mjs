@@ -111,7 +111,7 @@ export const pages = [
       "form: {prestress: exact, pretension_N: 10}\nsurface: {}\n" +
       "truss: {ring: {longeron: {diameter_m: 0.02, wall_m: 0.001}}}\n" +
       "optimize: {population: 10, generations: 10, variables: [{set: tie, vary: force_density, range: 40 %}], " +
-      "objective: [{figure: facets}]}\n",
+      "objective: [{figure: facets, feed: fixed}]}\n",
     sections: [...GA.slice(0, -1), "coupling", "provenance"],
     says: { ".figures dt >> nth=1": "ψ after form-finding", ".figures dt >> nth=2": "tension ratio, inner cables" },
   },

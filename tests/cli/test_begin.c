@@ -66,11 +66,11 @@ START_TEST(a_objective_that_costs_the_best_fit_is_told)
     static const char better[] = "for a refocused feed, the net of the form-finding is better";
     const char *out = temp("d.h5"), *path = temp("dish.yaml");
     HIFDM(0, "new", temp("dish"));
-    HIFDM(0, "run", path, "-o", out, "--set", "optimize.objective=[{figure: facets}]");
+    HIFDM(0, "run", path, "-o", out, "--set", "optimize.objective=[{figure: facets, feed: fixed}]");
     ck_assert_int_eq(count_of(said.out, better), 1);
     EXPECT(file_with("said.txt", said.out), out, "--",
            "(lambda dB: dB['form'] < dB['refine'] and ('better: gain loss %.3g dB at 10 GHz. To minimise this error, "
-           "use {figure: facets, fit: best} and {figure: psi, weight: 0.3}' % dB['form']).encode() in a)"
+           "use {figure: facets, feed: refocused} and {figure: psi, weight: 0.3}' % dB['form']).encode() in a)"
            "({n: b['surface/' + n + '/refocused_gain_loss_dB'][1] for n in ('form', 'refine')})");
     HIFDM(0, "run", path, "-o", out, "--force");
     ck_assert_str_eq(said.err, ""); /* nothing moves far */

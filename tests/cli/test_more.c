@@ -11,7 +11,7 @@
     "load_cases: [{name: cold, temperature_K: -100}]\ntolerance: {sigma_cut_m: 1.0e-5, samples: 50}\n"
 #define OPTIMIZE                                                                                                       \
     "optimize:\n  population: 8\n  generations: 6\n"                                                                   \
-    "  variables: [{set: all, vary: force_density, range: 50 %}]\n  objective: [{figure: facets}]\n"
+    "  variables: [{set: all, vary: force_density, range: 50 %}]\n  objective: [{figure: facets, feed: fixed}]\n"
 
 static const char *case_of(const char *name, const char *parts, const char *method, int steps)
 {
@@ -93,10 +93,10 @@ END_TEST
 START_TEST(a_model_that_its_steps_refute_is_no_claim)
 {
     const char *c = case_of("c.yaml", NET, "lm", 200), *path = temp("r.h5"),
-               *fit = "optimize.objective=[{figure: facets, fit: best}]";
-    HIFDM(0, "run", c, "-o", path, "--set", fit);
+               *refocused = "optimize.objective=[{figure: facets}]";
+    HIFDM(0, "run", c, "-o", path, "--set", refocused);
     OUT(": the last five gained less than 0.01 %, although the model predicts at most ");
-    HIFDM(0, "run", c, "-o", path, "--set", fit, "--more", "12");
+    HIFDM(0, "run", c, "-o", path, "--set", refocused, "--more", "12");
     ERR("the last 10 steps lowered the merit by ");
     ck_assert(!strstr(said.err, "Better designs are near"));
     EXPECT(path, "--", "a['refine'].attrs['predicted_gain'] > 1e-4", "a['refine'].attrs['algorithm_stop'] == 2");
@@ -139,11 +139,11 @@ END_TEST
 START_TEST(a_stopped_run_leaves_the_finished_result)
 {
     const char *c = case_of("c.yaml", NET, "lm", 3), *path = temp("r.h5"), *before = temp("before.h5"),
-               *whole = temp("whole.h5"), *fit = "optimize.objective=[{figure: facets, fit: best}]",
+               *whole = temp("whole.h5"), *refocused = "optimize.objective=[{figure: facets}]",
                *rings = "scene.paraboloid.rings=6";
-    const char *const argv[] = {hifdm_program(), "run", c,       "-o",  path,     "--progress", "jsonl",
-                                "--set",         fit,   "--set", rings, "--more", "20",         NULL};
-    HIFDM(0, "run", c, "-o", path, "--quiet", "--set", fit, "--set", rings);
+    const char *const argv[] = {hifdm_program(), "run",     c,       "-o",  path,     "--progress", "jsonl",
+                                "--set",         refocused, "--set", rings, "--more", "20",         NULL};
+    HIFDM(0, "run", c, "-o", path, "--quiet", "--set", refocused, "--set", rings);
     SHELL(0, "cp \"$1\" \"$2\"", path, before);
     for (int kills = 0; kills < 2; kills++) {
         session s = start_program(argv);
@@ -153,8 +153,8 @@ START_TEST(a_stopped_run_leaves_the_finished_result)
             ck_assert(says(temp("err"), " of the refinement") && says(temp("err"), "The earlier result is unchanged"));
         SHELL(0, "cmp \"$1\" \"$2\"", path, before);
     }
-    HIFDM(0, "run", c, "-o", path, "--quiet", "--set", fit, "--set", rings, "--more", "1");
-    HIFDM(0, "run", case_of("four.yaml", NET, "lm", 4), "-o", whole, "--quiet", "--set", fit, "--set", rings);
+    HIFDM(0, "run", c, "-o", path, "--quiet", "--set", refocused, "--set", rings, "--more", "1");
+    HIFDM(0, "run", case_of("four.yaml", NET, "lm", 4), "-o", whole, "--quiet", "--set", refocused, "--set", rings);
     demand_twins(path, whole);
     SHELL(0, "test -z \"$(ls -A \"$1\" | grep -E 'journal|tmp')\"", temp("."));
 }

@@ -10,6 +10,7 @@ typedef struct {
 } line;
 
 static const line scene[] = {{ON_TRUSS, ON_TRUSS, {NULL}},
+                             {"surface: {}\n", "surface: {}\n", {NULL}},
                              {"cables: [{expansion_per_K: 1e-6}]\n", "cables: [{expansion_per_K: 1e-6}]\n", {NULL}}};
 
 static const line load_cases[] = {
@@ -51,10 +52,15 @@ static const line rows[] = {
      "    - {figure: psi, load_case: all, take: worst}\n",
      {"8: " IS_NOW("optimize.objective.2.goal", "optimize.objective.2.figure"),
       "25: " IS_NOW("optimize.objective.2.over=states", "optimize.objective.2.load_case=all")}},
+    {"    - {figure: facets, fit: none, weight: 0.1}\n",
+     "    - {figure: facets, feed: fixed, weight: 0.1}\n",
+     {"29: " IS_NOW("optimize.objective.3.fit=none", "optimize.objective.3.feed=fixed")}},
+    {"    - {figure: facets, fit: best, weight: 0.1}\n",
+     "    - {figure: facets, weight: 0.1}\n",
+     {"29: " IS_NOW("optimize.objective.4.fit=best", "optimize.objective.4.feed=refocused")}},
     {"  limits: [{limit: displacement, bounds: [0, 1]}]\n",
      "  limits: [{figure: deflection, bounds: [0, 1]}]\n",
-     {"13: " IS_NOW("optimize.limits.0.limit", "optimize.limits.0.figure"),
-      "20: " IS_NOW("optimize.limits.0.figure=displacement", "optimize.limits.0.figure=deflection")}}};
+     {"20: " IS_NOW("optimize.limits.0.limit=displacement", "optimize.limits.0.figure=deflection")}}};
 
 static const line front[] = {
     {"optimize:\n", "optimize:\n", {NULL}},
@@ -64,11 +70,13 @@ static const line front[] = {
     {"    - {figure: psi, over: states}\n",
      "    - {figure: psi, load_case: all}\n",
      {"27: " IS_NOW("optimize.front.0.over=states", "optimize.front.0.load_case=all")}},
+    {"    - {figure: surface, fit: none}\n",
+     "    - {figure: surface, feed: fixed}\n",
+     {"30: " IS_NOW("optimize.front.1.fit=none", "optimize.front.1.feed=fixed")}},
     {"    - {goal: displacement, state: moved}\n",
      "    - {figure: deflection, load_case: moved}\n",
-     {"8: " IS_NOW("optimize.front.1.goal", "optimize.front.1.figure"),
-      "14: " IS_NOW("optimize.front.1.figure=displacement", "optimize.front.1.figure=deflection"),
-      "28: " IS_NOW("optimize.front.1.state", "optimize.front.1.load_case")}}};
+     {"14: " IS_NOW("optimize.front.2.goal=displacement", "optimize.front.2.figure=deflection"),
+      "28: " IS_NOW("optimize.front.2.state", "optimize.front.2.load_case")}}};
 
 /* ---- a case ---- */
 
@@ -123,7 +131,7 @@ START_TEST(an_old_case_has_the_result_of_the_new_one)
     HIFDM(0, "run", now, "-o", temp("now.h5"), "--quiet");
     ck_assert_int_eq(count_of(said.err, " is now "), 0);
     EXPECT(temp("old.h5"), temp("now.h5"), "--", "differing(a, b) == ['case/text']",
-           _i ? "'front' in a" : "'front' not in a and a['goals/weight'].shape == (3,)");
+           _i ? "'front' in a" : "'front' not in a and a['goals/weight'].shape == (5,)");
     /* the result of an old case is read without a warning */
     HIFDM(0, "show", temp("old.h5"));
     ck_assert_int_eq(count_of(said.err, " is now "), 0);
@@ -140,6 +148,7 @@ START_TEST(overrides_may_have_old_names)
         {"optimize.goals.1.weight=2", "optimize.goals.1.weight", "optimize.objective.1.weight"},
         {"optimize.objective.0.over=states", "optimize.objective.0.over=states", "optimize.objective.0.load_case=all"},
         {"adjust.aim=theory", "adjust.aim=theory", "adjust.aim=target_positions"},
+        {"optimize.goals.3.fit=best", "optimize.goals.3.fit=best", "optimize.objective.3.feed=refocused"},
         {"optimize.goals=[{figure: mass, mass_kg_per_m: 1}]", "optimize.goals", "optimize.objective"}};
     write_both(false);
     for (size_t k = 0; k < sizeof set / sizeof *set; k++) {
@@ -300,6 +309,14 @@ START_TEST(old_words_of_axes)
     EXPECT(temp("s.h5"), "--", "texts(a['points/input/optimize.objective.0.over']) == ['design', 'states']",
            "a['points/form/psi_m'][0] == a['points/form/psi_m'][1]",
            "sum('load_cases_mean' in n for n in contents(a)) == 3");
+    static const char *const feed[] = {"goals.0.fit: [none, best]", "objective.0.feed: [fixed, refocused]"};
+    for (int k = 0; k < 2; k++) { /* the point has the id that it has in version 0.2 */
+        HIFDM(0, "check",
+              file_with("u.yaml", formatted(ON_TRUSS "surface: {}\n" SMALL_GA "optimize.objective: [{figure: facets}]\n"
+                                                     "sweep:\n  optimize.%s\n",
+                                            feed[k])));
+        OUT("first 6924eac3372e: optimize.objective.0.feed=fixed\n");
+    }
     path = file_with("t.yaml", ON_TRUSS SMALL_GA "sweep: {optimize.compare_lm: [true],\n  optimize.refine: [false]}\n");
     HIFDM(2, "check", path);
     ERRS("error: %s:9:3: sweep.optimize.refine: is an axis already, on line 8\n", path);

@@ -122,17 +122,18 @@ END_TEST
  * these nodes, or if no variable moves them. A reflector of a hundredth of the size is no other. */
 START_TEST(nodes_that_no_objective_counts_are_told)
 {
-    static const char *const silent[] = {
-        "optimize.variables.0.set=tie",
-        "optimize.objective=[{figure: facets}, {figure: psi, weight: 0.1}, {figure: length, set: rear, weight: 0.1}]"};
+    static const char *const silent[] = {"optimize.variables.0.set=tie",
+                                         "optimize.objective=[{figure: facets, feed: fixed}, {figure: psi, weight: "
+                                         "0.1}, {figure: length, set: rear, weight: 0.1}]"};
     static const char *const size[] = {"aperture_m: 6, focal_length_m: 3, rear_distance_m: 1.8",
                                        "aperture_m: 0.06, focal_length_m: 0.03, rear_distance_m: 0.018"};
     const char *out = temp("r.h5"),
-               *path = file_with("c.yaml", formatted("scene: {paraboloid: {rings: 4, %s}}\n"
-                                                     "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
-                                                     "optimize: {method: lm, objective: [{figure: facets}], "
-                                                     "variables: [{set: all, vary: force_density, range: 50 %%}]}\n",
-                                                     size[_i]));
+               *path =
+                   file_with("c.yaml", formatted("scene: {paraboloid: {rings: 4, %s}}\n"
+                                                 "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
+                                                 "optimize: {method: lm, objective: [{figure: facets, feed: fixed}], "
+                                                 "variables: [{set: all, vary: force_density, range: 50 %%}]}\n",
+                                                 size[_i]));
     HIFDM(0, "run", path, "-o", out, "--json");
     EXPECT(out_as("r.json"), out, "--",
            "(lambda ids, moved: (lambda k: [w for w in a['warnings'] if f'node {ids[k]}, and ' in w and "

@@ -21,7 +21,7 @@ import numpy as np
 
 CYLINDER = "scene.parabolic_cylinder."
 BUDGETS = 1000, 5000, 20000
-PSI, FACETS, PULL = "{figure: psi}", "{figure: facets}", "{figure: pull}"
+PSI, FACETS, PULL = "{figure: psi}", "{figure: facets, feed: fixed}", "{figure: pull}"
 RATIO = "{figure: ratio, set: boundary}"
 TRIANGLES = ["pattern=triangle", "modules=[3, 3]", "focal_length_m=30", "optimize.range_N=2"]
 PROBLEMS = {  # name: case, objectives, changes of the case; the settings were chosen on other nets than the last four

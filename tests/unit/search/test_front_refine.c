@@ -447,7 +447,7 @@ static double least_beside(hf_problem *p, const double most[HF_FRONT_OBJECTIVES_
 
 static const char *const traded[] = {
     "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]",
-    "optimize.front=[{figure: facets}, {figure: pull}]",
+    "optimize.front=[{figure: facets, feed: fixed}, {figure: pull}]",
     "optimize.front=[{figure: psi}, {figure: evenness, set: boundary}]",
 };
 enum { N_TRADED = sizeof traded / sizeof *traded, N_POINT = 11 };

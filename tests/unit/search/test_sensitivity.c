@@ -31,11 +31,11 @@ static const char *const set_of[N_VARY] = {
 };
 
 static const hf_objective_settings wanted[] = {
-    WANT_ERROR(SURFACE, NORMAL, NONE, 1), /* the first: without a truss */
+    WANT_ERROR(SURFACE, NORMAL, FIXED, 1), /* the first: without a truss */
     WANT(PSI, "", NAN, 1),
-    WANT_ERROR(SURFACE, NORMAL, BEST, 1),
-    WANT_ERROR(SURFACE, HALF_PATH, NONE, 1),
-    WANT_ERROR(SURFACE, HALF_PATH, BEST, 1),
+    WANT_ERROR(SURFACE, NORMAL, REFOCUSED, 1),
+    WANT_ERROR(SURFACE, HALF_PATH, FIXED, 1),
+    WANT_ERROR(SURFACE, HALF_PATH, REFOCUSED, 1),
     WANT_ERRORS(FACETS, 2),
     WANT(TENSION, "tie", 9, 1),
     WANT(TENSION, "rear", 9, 1),

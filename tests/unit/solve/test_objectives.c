@@ -147,7 +147,6 @@ START_TEST(objectives_are_weighed_together)
     double value[4], merit, square = 0, sum = 0;
     objective[0].weight = 3;
     objective[1].weight = 0.5;
-    objective[2].fit = HF_FIT_BEST;
     objective[3].weight = 0;
     open_wanting(&t, false, false, &rng);
     want(&t, 4, objective);
@@ -186,7 +185,7 @@ START_TEST(errors_of_the_surface_are_those_of_a_result)
                               is.fit.half_path_rms_m,   is.facet_normal_rms_m,       is.facet_fit_normal_rms_m,
                               is.facet_half_path_rms_m, is.facet_fit_half_path_rms_m};
     for (int k = 0; k < 8; k++) { /* the reported fit has half of the digits of its parameters (cloud.c) */
-        double within = objective[k].fit == HF_FIT_BEST && objective[k].along == HF_ALONG_NORMAL ? 1e-7 : 1e-13;
+        double within = objective[k].feed == HF_REFOCUSED && objective[k].along == HF_ALONG_NORMAL ? 1e-7 : 1e-13;
         ck_assert_double_eq_tol(value[k], wanted[k], within * wanted[k]);
     }
     close_wanting(&t);
@@ -269,7 +268,6 @@ START_TEST(a_surface_may_lack_facets_and_nodes)
     hf_messages messages = {0};
     const hf_surface_settings surface = {.focal_length_m = 2, .kind = HF_SURFACE_PARABOLIC_CYLINDER};
     hf_optimize_settings s = {.n_term = 2, .term = {objective_of(HF_FIGURE_FACETS), objective_of(HF_FIGURE_SURFACE)}};
-    s.term[1].fit = HF_FIT_BEST;
     open_line(&t);
     ck_assert_int_eq(hf_facets_find(&t.net.scene, &surface, &t.facets), HF_OK);
     ck_assert_int_eq(
@@ -277,7 +275,8 @@ START_TEST(a_surface_may_lack_facets_and_nodes)
         HF_BAD_CASE);
     ck_assert_str_eq(messages.text,
                      "error: optimize.objective.0: facets: this net has no facets\n"
-                     "error: optimize.objective.1: surface: a best fit needs at least six inner nodes\n");
+                     "error: optimize.objective.1: surface: a refocused feed needs at least six inner nodes; use feed: "
+                     "fixed\n");
     hf_messages_free(&messages);
     close_wanting(&t);
 }

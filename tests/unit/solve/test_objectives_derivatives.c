@@ -162,7 +162,6 @@ START_TEST(lesser_fits_follow_their_centre)
     for (int k = 0; k < 4; k++) {
         objective[k] = objective_of(k / 2 ? HF_FIGURE_FACETS : HF_FIGURE_SURFACE);
         objective[k].along = (hf_along)(k % 2);
-        objective[k].fit = HF_FIT_BEST;
     }
     open_wanting(&t, is_round, false, &rng);
     if (!is_aside) t.surface.focal_length_m *= 0.3;

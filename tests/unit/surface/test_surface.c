@@ -423,7 +423,7 @@ START_TEST(derivatives_know_the_bounds_of_the_fit)
     hf_cloud cloud = {.kind = HF_SURFACE_PARABOLOID,
                       .focal_length_m = focal_m[_i],
                       .along = HF_ALONG_HALF_PATH,
-                      .fit = HF_FIT_BEST,
+                      .feed = HF_REFOCUSED,
                       .n_node = N_GRID,
                       .n = N_GRID,
                       .row = row};
