@@ -25,7 +25,7 @@ extern const char *const hf_verdict_word[HF_VERDICT_N];
  * and margins are in the unit of the figure. */
 #define HF_VERDICT_LIST(X)                                                                                             \
     X(REAL, double, value, , "of the nominal net, or of the share")                                                    \
-    X(REAL, double, bound, , "the bound that the value is nearer to")                                                  \
+    X(REAL, double, bound, , "the bound that the value is relatively nearer to")                                       \
     X(REAL, double, margin, , "signed distance of the value from that bound; negative: not met")                       \
     X(REAL, double, relative_margin, , "margin relative to that bound; NaN: the bound is 0")                           \
     X(REAL, double, error_bound, , "of the value of the nominal net; NaN: not known")                                  \

@@ -47,7 +47,7 @@ static const char paraboloid[] =
     "  method: lm                  # least squares by derivatives; ga: the genetic algorithm\n"
     "  variables: [{set: tie, vary: force_density, range: 50 %}]   # of the value that each has, either way\n"
     "  objective:\n"
-    "    - {figure: facets, along: half_path}   # error of the facets that a radio wave sees, for a refocused feed\n"
+    "    - {figure: facets, feed: refocused, along: half_path}   # error of the facets that a radio wave sees\n"
     "    - {figure: psi, weight: 0.3}  # keeps the nodes on their surface; without this row the nets move by 0.1 m\n"
     "\n"
     "# The hoop truss that carries both rims, CFRP tubes; without it the rims are rigid.\n"

@@ -407,6 +407,16 @@ void hf_required_bound_errors(const hf_required *q, int state, const hf_required
 
 /* ---- margins ---- */
 
+/* Returns the distance from one bound of a row. If both bounds are nonzero, the distances are relative to them, because
+ * the nearer one must be found. A value that does not exist is infinitely far outside. */
+static double distance_of(const hf_requirement_settings *r, bool is_high, double value)
+{
+    double distance = is_high ? r->at_most - value : value - r->at_least;
+    bool is_relative = isfinite(r->at_least * r->at_most) && r->at_least * r->at_most != 0;
+    if (isnan(distance)) return -(double)INFINITY;
+    return is_relative ? distance / fabs(is_high ? r->at_most : r->at_least) : distance;
+}
+
 double hf_required_margin(const hf_required *q, int i, const double *value, size_t stride, int *state, int *column)
 {
     const hf_requirement_settings *r = &q->row[i];
@@ -415,8 +425,7 @@ double hf_required_margin(const hf_required *q, int i, const double *value, size
         for (int is_high = 0; is_high < 2; is_high++) {
             int at = is_high ? q->high[i] : q->low[i];
             if (at < 0 || !(q->states[i] >> k & 1u)) continue;
-            double of = value[(size_t)k * stride + (size_t)at], margin = is_high ? r->at_most - of : of - r->at_least;
-            if (isnan(margin)) margin = -INFINITY;
+            double margin = distance_of(r, is_high, value[(size_t)k * stride + (size_t)at]);
             if (margin >= least && !(isinf(least) && least > 0)) continue;
             least = margin;
             *state = k;
@@ -441,8 +450,12 @@ void hf_required_note(const hf_required *q, int i, bool is_worst, const double *
 {
     const hf_requirement_settings *r = &q->row[i];
     int state = 0, column = 0;
-    double margin = hf_required_margin(q, i, value, stride, &state, &column);
+    hf_required_margin(q, i, value, stride, &state, &column);
     size_t at = (size_t)state * stride + (size_t)column;
+    bool is_high = q->high[i] == column &&
+                   (q->low[i] != column || !(distance_of(r, false, value[at]) < distance_of(r, true, value[at])));
+    double margin = is_high ? r->at_most - value[at] : value[at] - r->at_least;
+    if (isnan(margin)) margin = -INFINITY;
     if (is_worst) {
         to->worst_margin = margin;
         to->worst_value = value[at];
@@ -450,7 +463,6 @@ void hf_required_note(const hf_required *q, int i, bool is_worst, const double *
         snprintf(to->worst_item, sizeof to->worst_item, "%s", id_of(q, column, item[at]));
         return;
     }
-    bool is_high = q->high[i] == column && (q->low[i] != column || !(value[at] - r->at_least < r->at_most - value[at]));
     to->value = value[at];
     to->bound = is_high ? r->at_most : r->at_least;
     to->margin = margin;

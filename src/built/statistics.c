@@ -371,7 +371,7 @@ typedef struct {
     int row;       /* row of the requirements */
     size_t at;     /* of its margin in a row of a sample */
     long i, n_met; /* number of the present sample; samples that meet the row */
-    double quantile;
+    double quantile, worst;
     bool has_quantile; /* the sample with the margin `quantile` was found */
     hf_requirement_verdict *to;
 } search;
@@ -393,8 +393,9 @@ static void note_sample(void *context, const double *row)
         s->has_quantile = true;
         hf_required_note(q, s->row, false, value, item, stride, s->to);
     }
-    if (s->to->worst_sample < 0 || row[s->at] < s->to->worst_margin) {
+    if (s->to->worst_sample < 0 || row[s->at] < s->worst) {
         s->to->worst_sample = s->i;
+        s->worst = row[s->at];
         hf_required_note(q, s->row, true, value, item, stride, s->to);
     }
     s->i++;

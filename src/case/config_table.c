@@ -185,7 +185,7 @@ static const hf_field objective_field[] = {
     {"target", HF_FIELD_DOUBLE, IN(objective, target), -BIG, BIG, "", "", NULL},
     {"mass_kg_per_m", HF_FIELD_DOUBLE, IN(objective, mass_kg_per_m), HF_ABOVE_ZERO, BIG, "", "kg/m", NULL},
     {"along", HF_FIELD_WORD, IN(objective, along), 0, 0, "normal", "", HF_WORDS("normal", "half_path")},
-    {"feed", HF_FIELD_WORD, IN(objective, feed), 0, 0, "refocused", "", hf_focus_word},
+    {"feed", HF_FIELD_WORD, IN(objective, feed), 0, 0, "fixed", "", hf_focus_word},
     {"frequency_Hz", HF_FIELD_DOUBLE, IN(objective, frequency_Hz), HF_ABOVE_ZERO, 1e15, "", "Hz", NULL},
     {"load_case", HF_FIELD_TEXT, IN(objective, load_case), 1, HF_SET_NAME_SIZE, "", "", NULL},
     {"over", HF_FIELD_WORD, IN(objective, over), 0, 0, "design", "", hf_over_word},

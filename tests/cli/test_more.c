@@ -93,7 +93,7 @@ END_TEST
 START_TEST(a_model_that_its_steps_refute_is_no_claim)
 {
     const char *c = case_of("c.yaml", NET, "lm", 200), *path = temp("r.h5"),
-               *refocused = "optimize.objective=[{figure: facets}]";
+               *refocused = "optimize.objective=[{figure: facets, feed: refocused}]";
     HIFDM(0, "run", c, "-o", path, "--set", refocused);
     OUT(": the last five gained less than 0.01 %, although the model predicts at most ");
     HIFDM(0, "run", c, "-o", path, "--set", refocused, "--more", "12");
@@ -139,7 +139,7 @@ END_TEST
 START_TEST(a_stopped_run_leaves_the_finished_result)
 {
     const char *c = case_of("c.yaml", NET, "lm", 3), *path = temp("r.h5"), *before = temp("before.h5"),
-               *whole = temp("whole.h5"), *refocused = "optimize.objective=[{figure: facets}]",
+               *whole = temp("whole.h5"), *refocused = "optimize.objective=[{figure: facets, feed: refocused}]",
                *rings = "scene.paraboloid.rings=6";
     const char *const argv[] = {hifdm_program(), "run",     c,       "-o",  path,     "--progress", "jsonl",
                                 "--set",         refocused, "--set", rings, "--more", "20",         NULL};

@@ -56,7 +56,7 @@ static const line rows[] = {
      "    - {figure: facets, feed: fixed, weight: 0.1}\n",
      {"29: " IS_NOW("optimize.objective.3.fit=none", "optimize.objective.3.feed=fixed")}},
     {"    - {figure: facets, fit: best, weight: 0.1}\n",
-     "    - {figure: facets, weight: 0.1}\n",
+     "    - {figure: facets, feed: refocused, weight: 0.1}\n",
      {"29: " IS_NOW("optimize.objective.4.fit=best", "optimize.objective.4.feed=refocused")}},
     {"  limits: [{limit: displacement, bounds: [0, 1]}]\n",
      "  limits: [{figure: deflection, bounds: [0, 1]}]\n",

@@ -301,7 +301,8 @@ END_TEST
     "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay}\n"                                                 \
     "optimize:\n  method: lm\n  refine_steps: 60\n"                                                                    \
     "  variables: [{set: all, vary: force_density, range: 50 %}]\n"                                                    \
-    "  objective: [{figure: facets, along: half_path}, {figure: evenness, set: front, weight: 1e-3}]\n"                \
+    "  objective: [{figure: facets, along: half_path, feed: refocused}, {figure: evenness, set: front, weight: "       \
+    "1e-3}]\n"                                                                                                         \
     "  limits: [{figure: tension, set: all, bounds: [1, 60]}]\n"
 
 /* hifdm reports steps once a second. Another step runs after the first report. LONG_REFINE takes about five seconds. */

@@ -226,10 +226,25 @@ class Result:
 
 # ---- verdicts ----
 
+def scale_of(row, key):
+    both = [row["at_least"], row["at_most"]]
+    return abs(row[key]) if not np.isnan(both).any() and all(both) else 1
+
+
+def said_margin(row, said, value):
+    """Returns the margin that the program gives, in the terms of margin_of, and checks its distance from the bound."""
+    key = "at_least" if said["bound"] == row["at_least"] else "at_most"
+    assert said["margin"] == (value - said["bound"]) * (1 if key == "at_least" else -1), "margin and value"
+    return said["margin"] / scale_of(row, key)
+
+
 def margin_of(row, low, high):
-    """Returns the margin of values of the columns of at_least and at_most; no value has a margin of -inf."""
-    margin = np.minimum(np.where(np.isnan(row["at_least"]), np.inf, low - row["at_least"]),
-                        np.where(np.isnan(row["at_most"]), np.inf, row["at_most"] - high))
+    """Returns the margin of values of the columns of at_least and at_most, relative to the bounds if both are nonzero.
+    No value has a margin of -inf."""
+    above = (low - row["at_least"]) / scale_of(row, "at_least")
+    below = (row["at_most"] - high) / scale_of(row, "at_most")
+    margin = np.minimum(np.where(np.isnan(row["at_least"]), np.inf, above),
+                        np.where(np.isnan(row["at_most"]), np.inf, below))
     has_no = (~np.isnan(row["at_least"]) & np.isnan(low)) | (~np.isnan(row["at_most"]) & np.isnan(high))
     return np.where(has_no, -np.inf, margin)
 
@@ -261,10 +276,13 @@ def judge_samples(result, row, said):
     quantile = np.sort(margin)[min(int(np.floor((1 - share) * n + 1e-9)), n - 1)]
     assert (quantile >= 0) == (met >= share * n - 1e-9), "quantile and yield"
     assert said["verdict"] == verdict, (said["verdict"], verdict)
-    assert said["yield"] == met / n and said["margin"] == quantile
+    assert said["yield"] == met / n and said_margin(row, said, said["value"]) == quantile
     assert np.allclose([said["yield_low"], said["yield_high"]], [low, high], rtol=1e-6, atol=1e-9)
     worst = int(np.argmin(margin))
-    assert said["worst_sample"] == worst and said["worst_margin"] == margin[worst]
+    assert said["worst_sample"] == worst
+    distance = [said["worst_value"] - row["at_least"], row["at_most"] - said["worst_value"]]
+    assert said["worst_margin"] in distance and margin[worst] in (
+        distance[0] / scale_of(row, "at_least"), distance[1] / scale_of(row, "at_most"))
     at = states_of(result, row)[int(np.argmin([c[worst] for c in columns]))]
     assert said["worst_load_case"] == at, (said["worst_load_case"], at)
     return quantile, 0.0
@@ -277,7 +295,7 @@ def judge_nominal(result, row, said):
         margin.append(float(margin_of(row, np.array(low), np.array(high))))
     least = min(margin)
     scale = max(abs(row["at_least"]) if not np.isnan(row["at_least"]) else 0, abs(said["value"]), 1e-300)
-    off = abs(said["margin"] - least) / scale
+    off = abs(said_margin(row, said, said["value"]) - least) * scale_of(row, "at_most") / scale
     most = QUADRATURE if row["figure"] == "facets" else RADIO if row["figure"] in OF_RADIO else TOLERANCE
     assert off == 0 if row["figure"] in COUNT else off < most, (said["margin"], least)
     at = states_of(result, row)[int(np.argmin(margin))]

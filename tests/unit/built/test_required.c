@@ -434,8 +434,8 @@ START_TEST(a_margin_is_judged_by_its_error)
 }
 END_TEST
 
-/* The nearer bound and the load case with the minimum margin count; a load case with a larger margin and a larger error
- * leaves the row undecided. */
+/* The relatively nearer bound and the load case with the minimum margin count: 56 of 60 is nearer than 8 of 5. A load
+ * case with a larger margin and a larger error leaves the row undecided. */
 START_TEST(all_load_cases_and_both_bounds_count)
 {
     row_list l = {0};
@@ -448,11 +448,11 @@ START_TEST(all_load_cases_and_both_bounds_count)
     double value[6] = {20, 30, 8, 41, 30, 56}, item[6] = {0, 1, 2, 0, 1, 2}, error[6] = {0};
     hf_requirement_verdict v = {0};
     int state, column;
-    ck_assert_double_eq(hf_required_margin(&q, 0, value, 2, &state, &column), 3);
-    ck_assert(state == 1 && column == 0);
+    ck_assert_double_eq(hf_required_margin(&q, 0, value, 2, &state, &column), 4.0 / 60);
+    ck_assert(state == 2 && column == 1);
     hf_required_judge_nominal(&q, 0, value, item, error, &v);
-    ck_assert(v.value == 8 && v.bound == 5 && v.margin == 3 && v.relative_margin == 0.6 && v.worst_value == 8);
-    ck_assert_str_eq(v.worst_load_case, "cold");
+    ck_assert(v.value == 56 && v.bound == 60 && v.margin == 4 && v.relative_margin == 4.0 / 60 && v.worst_value == 56);
+    ck_assert_str_eq(v.worst_load_case, "hot");
     ck_assert_str_eq(v.worst_item, "c2");
     ck_assert_int_eq(v.verdict, HF_VERDICT_PASS);
     error[5] = 4.5; /* of a margin of 4 */
@@ -566,7 +566,7 @@ START_TEST(quantile_and_yield_agree)
             row[hf_montecarlo_margin_at(k)] = hf_required_margin(&q, q.share[k], value, stride, &state, &column);
         margin[i] = INFINITY; /* again, by hand */
         for (int s = 0; s < 3; s++) {
-            double low = value[(size_t)s * stride] - 5, high = 60 - value[(size_t)s * stride + 1];
+            double low = (value[(size_t)s * stride] - 5) / 5, high = (60 - value[(size_t)s * stride + 1]) / 60;
             margin[i] = fmin(margin[i], isnan(low) ? -(double)INFINITY : fmin(low, high));
         }
         ck_assert_double_eq(row[hf_montecarlo_margin_at(0)], margin[i]);
@@ -583,14 +583,22 @@ START_TEST(quantile_and_yield_agree)
     ck_assert_msg((v[0].margin >= 0) == ((double)met >= share * n * (1 - 1e-12)), "quantile %g, %ld of %d, share %.17g",
                   v[0].margin, met, n, share);
     ck_assert_int_eq(v[0].worst_sample, at_worst);
-    ck_assert_double_eq(v[0].worst_margin, worst);
+    double of_worst = v[0].worst_value;
+    if (isinf(worst))
+        ck_assert_double_eq(v[0].worst_margin, worst);
+    else
+        ck_assert(fmin((of_worst - 5) / 5, (60 - of_worst) / 60) == worst &&
+                  (v[0].worst_margin == of_worst - 5 || v[0].worst_margin == 60 - of_worst));
     long below = 0, equal = 0, rank = 1 + (long)floor((1 - share) * n + 1e-9);
     for (int i = 0; i < n; i++) {
-        below += margin[i] < v[0].margin;
-        equal += margin[i] == v[0].margin;
+        below += margin[i] < v[0].relative_margin;
+        equal += margin[i] == v[0].relative_margin;
     }
     ck_assert_msg(below < rank && below + equal >= rank, "%ld below, %ld equal, rank %ld", below, equal, rank);
-    if (!isinf(v[0].margin)) ck_assert_double_eq(v[0].margin, fmin(v[0].value - 5, 60 - v[0].value));
+    if (!isinf(v[0].margin)) {
+        ck_assert_double_eq(v[0].relative_margin, fmin((v[0].value - 5) / 5, (60 - v[0].value) / 60));
+        ck_assert_double_eq(v[0].margin, v[0].bound == 5 ? v[0].value - 5 : 60 - v[0].value);
+    }
     hf_verdict expected = v[0].yield_low >= share   ? HF_VERDICT_PASS
                           : v[0].yield_high < share ? HF_VERDICT_FAIL
                                                     : HF_VERDICT_UNDECIDED;

@@ -15,7 +15,7 @@
              "  objective:\n"                                                                                          \
              "    - figure: psi\n"                                                                                     \
              "    - {figure: tension, set: edge, target: 20000, weight: 1e-3}\n"                                       \
-             "    - {figure: facets, along: half_path, feed: fixed}\n"                                                 \
+             "    - {figure: facets, along: half_path, feed: refocused}\n"                                             \
              "    - {figure: mass, mass_kg_per_m: 0.004}\n"                                                            \
              "  limits:\n"                                                                                             \
              "    - {figure: tension, set: tie, bounds: [1, .inf]}\n"                                                  \
@@ -77,10 +77,10 @@ START_TEST(objectives_and_limits_reach_their_place)
     const hf_limit_settings *l = c.optimize.limit;
     ck_assert_int_eq(c.optimize.n_term, 4);
     ck_assert(g[0].figure == HF_FIGURE_PSI && g[0].weight == 1 && isnan(g[0].target) && !*g[0].set);
-    ck_assert(g[0].along == HF_ALONG_NORMAL && g[0].feed == HF_REFOCUSED && isnan(g[0].mass_kg_per_m));
+    ck_assert(g[0].along == HF_ALONG_NORMAL && g[0].feed == HF_FIXED && isnan(g[0].mass_kg_per_m));
     ck_assert(g[1].figure == HF_FIGURE_TENSION && g[1].target == 20000 && g[1].weight == 1e-3);
     ck_assert_str_eq(g[1].set, "edge");
-    ck_assert(g[2].figure == HF_FIGURE_FACETS && g[2].along == HF_ALONG_HALF_PATH && g[2].feed == HF_FIXED);
+    ck_assert(g[2].figure == HF_FIGURE_FACETS && g[2].along == HF_ALONG_HALF_PATH && g[2].feed == HF_REFOCUSED);
     ck_assert(g[3].figure == HF_FIGURE_MASS && g[3].mass_kg_per_m == 0.004 && !*g[3].set);
     ck_assert_int_eq(c.optimize.n_limit, 2);
     ck_assert(l[0].figure == HF_LIMIT_TENSION && l[0].lower == 1 && l[0].upper == INFINITY);
@@ -133,7 +133,7 @@ START_TEST(a_difference_in_a_row_is_named)
                                         {"optimize.variables.2.bounds=[-9, 0.5]", "optimize.variables.2.bounds"},
                                         {"optimize.variables.0.range=30%", ""},
                                         {"optimize.objective.1.target=3", "optimize.objective.1.target"},
-                                        {"optimize.objective.2.feed=refocused", "optimize.objective.2.feed"},
+                                        {"optimize.objective.2.feed=fixed", "optimize.objective.2.feed"},
                                         {"optimize.limits.1.bounds=[1, 1.5]", "optimize.limits.1.bounds"},
                                         {"optimize.limits=[]", "optimize.limits"}};
     hf_case a, b;

@@ -30,7 +30,7 @@ static const struct {
      1e-4,
      1e-7},
 #define ON_TRUSS                                                                                                       \
-    "optimize.objective=[{figure: surface}, {figure: facets, feed: fixed, along: half_path, weight: 2}, {figure: "     \
+    "optimize.objective=[{figure: surface, feed: refocused}, {figure: facets, along: half_path, weight: 2}, {figure: " \
     "deflection, "                                                                                                     \
     "weight: 10}]",                                                                                                    \
         "truss.depth_m=1", "coupling.tof_m=1e-12"
