@@ -5,7 +5,7 @@
 #include "app/options.h"
 
 #define HF_HELP_SUMMARY "shape and pretension of the cable net of a large deployable mesh reflector"
-#define HF_HELP_N_EXIT 7
+#define HF_HELP_N_EXIT 8
 
 extern const struct hf_help_exit {
     const char *code, *meaning;

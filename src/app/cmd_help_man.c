@@ -14,6 +14,7 @@ const struct hf_help_exit hf_help_exit_table[HF_HELP_N_EXIT] = {
     {"3", "not converged, no feasible design, or points of a sweep failed"},
     {"4", "ill-posed"},
     {"5", "input/output"},
+    {"6", "the result fails a requirement (option --strict)"},
     {"75", "told to stop"},
 };
 

@@ -210,7 +210,8 @@ function writeDistributions() {
       {},
       "The charts show the share of the as-built samples whose value is at most that on the axis. Each load case has " +
         "its own curve. If the requirement applies to all load cases, the wide curve shows the worst of their " +
-        "values in each sample. This curve decides the verdict. Vertical lines are the bounds of the requirement. " +
+        "values in each sample. With two bounds, the verdict counts the samples within both bounds, which no curve " +
+        "shows. Vertical lines are the bounds of the requirement. " +
         "Horizontal lines are the required share. Samples without a shape have no value.",
     ),
     charts,
