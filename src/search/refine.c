@@ -311,6 +311,18 @@ static double distance_outside(hf_refine_problem *p, bool *is_outside)
     return margin;
 }
 
+/* Returns true if the merit is rounding of positions: a step would only follow the rounding. */
+static bool is_zero(const hf_refine_problem *p, const hf_refine_result *r)
+{
+    return !p->front && !p->is_outside && r->merit <= hf_refine_rounding(p);
+}
+
+/* Returns true if the pretension of the start is scaled before the first step. */
+static bool is_scaled_first(const hf_refine_problem *p, int max_iterations, const hf_refine_result *r)
+{
+    return p->is_outside && r->iterations == 0 && max_iterations > 0 && !p->front && hf_refine_n_constraint(p) > 0;
+}
+
 /* Multiplies the pretension of a start that breaks a requirement by the factor that leads farthest into all of them, or
  * nearest. A slack cable has no derivative that leads out, but a higher pretension does. Counts as one iteration.
  * Returns HF_OK or the status of the failure. */
@@ -333,7 +345,7 @@ static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
     p->violation = fmax(0, nearest);
     HF_TRY(hf_refine_evaluate(p, p->at));
     r->merit = hf_refine_merit(p, &p->result);
-    return hf_refine_linearise(p);
+    return is_zero(p, r) ? HF_OK : hf_refine_linearise(p);
 }
 
 /* Moves a start from outside into the limits. Each step aims at a part (`way`) of the way to the linear limits. Limits
@@ -345,7 +357,7 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
 {
     double gain;
     hf_watch_forget(&p->watch);
-    if (r->iterations == 0 && max_iterations > 0 && !p->front && hf_refine_n_constraint(p) > 0) {
+    if (is_scaled_first(p, max_iterations, r)) {
         HF_TRY(scale_into(p, r));
         HF_TRY(tell_watcher(p, r, max_iterations));
     }
@@ -474,8 +486,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
 {
     double gain = 0, converged = p->front ? FRONT_CONVERGED : GAIN_CONVERGED;
     hf_status status = hf_refine_evaluate(p, p->at);
-    bool is_zero = !p->front && !p->is_outside && r->merit <= hf_refine_rounding(p);
-    if (status == HF_OK && !is_zero) status = hf_refine_linearise(p);
+    if (status == HF_OK && !is_zero(p, r) && !is_scaled_first(p, max_iterations, r)) status = hf_refine_linearise(p);
     if (status == HF_OK && p->front) {
         r->merit = hf_refine_merit(p, &p->result);
         p->is_outside = !hf_watch_keeps(&p->watch, p->w);
@@ -486,7 +497,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
     if (status == HF_OK && p->is_outside) status = enter(p, max_iterations, r);
     while (status == HF_OK && !p->is_outside && r->stop == HF_REFINE_MAX_ITERATIONS && r->iterations < max_iterations) {
         double before = r->merit * r->merit / 2;
-        if (!p->front && r->merit <= hf_refine_rounding(p)) { /* a step would only follow the rounding */
+        if (is_zero(p, r)) {
             r->stop = HF_REFINE_CONVERGED;
             HF_TRY(tell_watcher(p, r, max_iterations));
             break;
