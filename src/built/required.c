@@ -407,14 +407,17 @@ void hf_required_bound_errors(const hf_required *q, int state, const hf_required
 
 /* ---- margins ---- */
 
-/* Returns the distance from one bound of a row. If both bounds are nonzero, the distances are relative to them, because
- * the nearer one must be found. A value that does not exist is infinitely far outside. */
-static double distance_of(const hf_requirement_settings *r, bool is_high, double value)
+/* Returns the margin of a value at one bound of a row. A value that does not exist is infinitely far outside. */
+static double margin_of(const hf_requirement_settings *r, bool is_high, double value)
 {
-    double distance = is_high ? r->at_most - value : value - r->at_least;
+    double margin = is_high ? r->at_most - value : value - r->at_least;
+    return isnan(margin) ? -(double)INFINITY : margin;
+}
+
+double hf_required_distance(const hf_requirement_settings *r, bool is_high, double value)
+{
     bool is_relative = isfinite(r->at_least * r->at_most) && r->at_least * r->at_most != 0;
-    if (isnan(distance)) return -(double)INFINITY;
-    return is_relative ? distance / fabs(is_high ? r->at_most : r->at_least) : distance;
+    return margin_of(r, is_high, value) / (is_relative ? fabs(is_high ? r->at_most : r->at_least) : 1);
 }
 
 double hf_required_margin(const hf_required *q, int i, const double *value, size_t stride, int *state, int *column)
@@ -425,7 +428,7 @@ double hf_required_margin(const hf_required *q, int i, const double *value, size
         for (int is_high = 0; is_high < 2; is_high++) {
             int at = is_high ? q->high[i] : q->low[i];
             if (at < 0 || !(q->states[i] >> k & 1u)) continue;
-            double margin = distance_of(r, is_high, value[(size_t)k * stride + (size_t)at]);
+            double margin = hf_required_distance(r, is_high, value[(size_t)k * stride + (size_t)at]);
             if (margin >= least && !(isinf(least) && least > 0)) continue;
             least = margin;
             *state = k;
@@ -452,10 +455,9 @@ void hf_required_note(const hf_required *q, int i, bool is_worst, const double *
     int state = 0, column = 0;
     hf_required_margin(q, i, value, stride, &state, &column);
     size_t at = (size_t)state * stride + (size_t)column;
-    bool is_high = q->high[i] == column &&
-                   (q->low[i] != column || !(distance_of(r, false, value[at]) < distance_of(r, true, value[at])));
-    double margin = is_high ? r->at_most - value[at] : value[at] - r->at_least;
-    if (isnan(margin)) margin = -INFINITY;
+    bool is_high = q->high[i] == column && (q->low[i] != column || !(hf_required_distance(r, false, value[at]) <
+                                                                     hf_required_distance(r, true, value[at])));
+    double margin = margin_of(r, is_high, value[at]);
     if (is_worst) {
         to->worst_margin = margin;
         to->worst_value = value[at];
@@ -486,7 +488,7 @@ void hf_required_judge_nominal(const hf_required *q, int i, const double *value,
             int c = is_high ? q->high[i] : q->low[i];
             if (c < 0 || !(q->states[i] >> k & 1u)) continue;
             size_t at = (size_t)k * n + (size_t)c;
-            double margin = is_high ? r->at_most - value[at] : value[at] - r->at_least;
+            double margin = margin_of(r, is_high, value[at]);
             double off = isnan(error[at]) ? 0 : error[at];
             fails |= !(margin >= -off);
             is_close |= off > 0 && margin < off;

@@ -467,6 +467,12 @@ int hf_merged_required(const hf_merged *m, int row[HF_REQUIREMENT_ROWS_MAX])
     return n;
 }
 
+const char *hf_merged_unit(const hf_merged *m, int row)
+{
+    hf_required_figure figure = hf_ledger_figure(hf_texts_at(&m->row_name, row));
+    return figure < HF_REQUIRED_N_FIGURE ? hf_required_figure_unit[figure] : "";
+}
+
 double hf_merged_bound(const hf_merged *m, const hf_series *bound, int row)
 {
     double first = (double)NAN;

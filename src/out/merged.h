@@ -100,6 +100,9 @@ bool hf_merged_is_judged(const hf_merged *merged);
  * n_row, or 0 if no point has a value of a requirement. */
 int hf_merged_required(const hf_merged *merged, int row[HF_REQUIREMENT_ROWS_MAX]);
 
+/* Returns the SI unit of a requirement; "" if the file has a figure that this version does not know. */
+const char *hf_merged_unit(const hf_merged *merged, int row);
+
 /* Returns a bound of a requirement, of row_at_least or row_at_most. NaN: there is none, or points differ in it. */
 double hf_merged_bound(const hf_merged *merged, const hf_series *bound, int row);
 

@@ -279,18 +279,11 @@ const char *hf_print_study_verdict(const hf_merged *m, int i, char text[HF_AXIS_
     return text;
 }
 
-/* Returns the SI unit of a requirement; "" if a file has a figure that this version does not know. */
-static const char *required_SI(const hf_merged *m, int row)
-{
-    hf_required_figure figure = hf_ledger_figure(hf_texts_at(&m->row_name, row));
-    return figure < HF_REQUIRED_N_FIGURE ? hf_required_figure_unit[figure] : "";
-}
-
 /* Returns the unit of a requirement for people. Sets *scale to the factor of its values. */
 static const char *required_unit(const hf_merged *m, int row, double *scale)
 {
     const char *unit;
-    *scale = hf_print_scale(required_SI(m, row), &unit);
+    *scale = hf_print_scale(hf_merged_unit(m, row), &unit);
     return unit;
 }
 
@@ -342,7 +335,7 @@ static column required_column(const hf_merged *m, int row)
     if (isnan(at_least) && isnan(at_most)) /* an axis has the bounds */
         snprintf(c.unit, sizeof c.unit, "%s", unit);
     else
-        hf_print_bound(required_SI(m, row), at_least, at_most, c.unit);
+        hf_print_bound(hf_merged_unit(m, row), at_least, at_most, c.unit);
     return c;
 }
 

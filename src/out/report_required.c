@@ -60,14 +60,17 @@ static hf_status rank_cables(const hf_series *samples, const hf_series *at, doub
     return HF_OK;
 }
 
-/* Returns the margin of a value of this curve to the bounds that the curve belongs to. Both bounds of a tension have a
- * curve of their own. */
-static double margin_of(const hf_report_curve *c, const hf_requirement_settings *row, double value)
+/* Returns the distance of a value of this curve from the bounds that the curve belongs to. Both bounds of a tension
+ * have a curve of their own. */
+static double distance_of(const hf_report_curve *c, const hf_requirement_settings *row, double value)
 {
-    bool is_tension = row->figure == HF_REQUIRED_TENSION;
-    double low = is_tension && !c->is_low ? (double)NAN : value - row->at_least,
-           high = is_tension && c->is_low ? (double)NAN : row->at_most - value;
-    return fmin(low, high); /* fmin ignores NaN */
+    double nearest = INFINITY;
+    for (int is_high = 0; is_high < 2; is_high++) {
+        bool is_other = row->figure == HF_REQUIRED_TENSION && c->is_low == is_high;
+        if (isnan(is_high ? row->at_most : row->at_least) || is_other) continue;
+        nearest = fmin(nearest, hf_required_distance(row, is_high, value));
+    }
+    return nearest;
 }
 
 /* Takes the samples of a load case into the worst of all load cases. A sample without a value has none there, too. */
@@ -83,7 +86,7 @@ static hf_status take_worst(const hf_report_curve *c, const hf_requirement_setti
         bool has_both = !isnan(value) && (is_first || !isnan(worst->value[i]));
         if (!has_both)
             worst->value[i] = (double)NAN;
-        else if (is_first || margin_of(c, row, value) < margin_of(c, row, worst->value[i]))
+        else if (is_first || distance_of(c, row, value) < distance_of(c, row, worst->value[i]))
             worst->value[i] = value;
     }
     return HF_OK;

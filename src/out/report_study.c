@@ -175,11 +175,9 @@ static void write_required(const hf_merged *m, FILE *f)
     if (n == 0) return;
     hf_json_open_line(&j, "", "required", '[');
     for (int k = 0; k < n; k++) {
-        const char *name = hf_texts_at(&m->row_name, row[k]);
-        hf_required_figure figure = hf_ledger_figure(name);
         hf_json_open(&j, NULL, '{');
-        hf_json_text(&j, "name", name);
-        hf_json_text(&j, "unit", figure < HF_REQUIRED_N_FIGURE ? hf_required_figure_unit[figure] : "");
+        hf_json_text(&j, "name", hf_texts_at(&m->row_name, row[k]));
+        hf_json_text(&j, "unit", hf_merged_unit(m, row[k]));
         hf_json_number(&j, "at_least", hf_merged_bound(m, &m->row_at_least, row[k]));
         hf_json_number(&j, "at_most", hf_merged_bound(m, &m->row_at_most, row[k]));
         hf_json_open(&j, "values", '[');
