@@ -187,7 +187,7 @@ static hf_status return_to_form(hf_run *r, hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     hf_evaluate_form(&p->model, &p->settings.form, &p->workspace, NULL, &p->form);
-    if (!hf_status_has_shape(p->form.status)) return p->form.status; /* only if it was told to stop */
+    if (!hf_status_has_shape(p->form.status)) return p->form.status; /* only if the run was stopped */
     return hf_stage_take(r, &p->workspace, messages);
 }
 

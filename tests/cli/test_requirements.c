@@ -832,9 +832,9 @@ START_TEST(a_failed_search_leaves_verdicts)
     SHELL(0, "sed '/^optimize:/,$d' \"$1\" >\"$2\"", dish, temp("plain.yaml"));
     HIFDM(0, "run", temp("plain.yaml"), "-o", plain, LACKS);
     HIFDM(0, "show", plain, "--json");
-    const char *wanted = out_as("plain.json");
+    const char *expected = out_as("plain.json");
     HIFDM(0, "show", path, "--json");
-    EXPECT(out_as("failed.json"), wanted, "--", "a['status'] == 'no_feasible'", "a['verdict'] == 'fail'",
+    EXPECT(out_as("failed.json"), expected, "--", "a['status'] == 'no_feasible'", "a['verdict'] == 'fail'",
            "len(a['load_cases']) == 2",
            "[r | {'error_bound': 0} for r in a['requirements']] == [r | {'error_bound': 0} for r in b['requirements']]",
            "a['requirements'][0]['error_bound'] is b['requirements'][0]['error_bound'] is None",
