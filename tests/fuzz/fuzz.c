@@ -2,6 +2,7 @@
 #include "fuzz/fuzz.h"
 
 #include "base/text.h"
+#include "case/config_fault.h"
 #include "case/study.h"
 #include <hifdm/config.h>
 #include <hifdm/store.h>
@@ -111,8 +112,10 @@ hf_status __wrap_hf_config_load(const char *path, const char *const *overrides, 
     *settings = kept;
     settings->text = strdup(kept.text);
     settings->overrides = strdup(kept.overrides);
-    settings->where_given = NULL; /* messages then name keys without their lines */
-    FUZZ_REQUIRE(settings->text && settings->overrides);
+    size_t n_byte = (size_t)hf_key_n_location() * HF_CONFIG_WHERE_SIZE + HF_CONFIG_FAULTY_SIZE;
+    settings->where_given = malloc(n_byte);
+    FUZZ_REQUIRE(settings->text && settings->overrides && settings->where_given);
+    memcpy(settings->where_given, kept.where_given, n_byte);
     return HF_OK;
 }
 
