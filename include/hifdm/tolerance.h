@@ -57,6 +57,12 @@ extern const char *const hf_tolerance_kind_word[HF_TOLERANCE_KINDS]; /* words of
     X(int, n_with_slack, INT, .json = 1, .key = "with_slack_cables", .description = "those with slack cables")         \
     X(int, n_with_loose, INT, .json = 1, .key = "with_loose_nodes",                                                    \
       .description = "those with nodes that no taut cable holds")                                                      \
+    X(int, n_sampled_load_case, INT, .json = 1, .key = "sampled_load_cases",                                           \
+      .description = "load cases in which requirements need the samples, without the nominal one")                     \
+    X(int, n_with_slack_in_any, INT, .json = 1, .key = "with_slack_cables_in_any_load_case",                           \
+      .description = "samples with slack cables in the nominal load case or in one of these")                          \
+    X(int, n_failed_in_any, INT, .json = 1, .key = "failed_in_any_load_case",                                          \
+      .description = "samples without a shape in the nominal load case or in one of these")                            \
     X(double, nominal_psi_m, REAL, .json = 2, .description = "of the net without errors")                              \
     X(double, first_order_rms_psi_m, REAL, .json = 2, .description = "root of the mean of psi^2, to first order")      \
     X(double, psi_95_m, REAL, .json = 2,                                                                               \

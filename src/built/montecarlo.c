@@ -90,7 +90,7 @@ hf_status hf_montecarlo_require(hf_montecarlo *t, const hf_required *q, const hf
     for (int state = 1; state < q->n_state; state++)
         n += (int)(q->many >> state & 1u);
     t->required = q;
-    t->n_value = HF_TOLERANCE_COLUMNS + q->n_share + 2 * q->n_state * q->n_column;
+    t->n_value = HF_TOLERANCE_COLUMNS + q->n_share + 2 * q->n_state * q->n_column + HF_SAMPLE_COUNTS;
     HF_TRY(HF_ARENA_ARRAYS(&t->required_block, HF_ARRAY(t->row, (size_t)t->n_chunk * (size_t)t->n_value),
                            HF_ARRAY(t->load_case, n), HF_ARRAY(t->antenna, (1 + n) * q->n_antenna)));
     HF_TRY(hf_required_radio_near(q, &(hf_required_net){&t->built->model, t->built->position_m, t->built->tension_N},
@@ -255,6 +255,15 @@ static void measure_required(hf_montecarlo *t, const hf_model *m, int state, con
                         row + hf_montecarlo_value_at(t->required, state, true));
 }
 
+/* Adds the shape of a sample in one load case to the counts of its row. r is NULL if the load case has no shape. */
+static void count_slack(const hf_montecarlo *t, const hf_form_result *r, double *row)
+{
+    double *count = row + hf_montecarlo_count_at(t->required);
+    bool is_first = isnan(count[HF_SAMPLE_SLACK]), has_shape = r && r->status == HF_OK;
+    count[HF_SAMPLE_SLACK] = fmax(is_first ? 0 : count[HF_SAMPLE_SLACK], has_shape ? r->n_slack : 0);
+    count[HF_SAMPLE_WITHOUT_SHAPE] = (is_first ? 0 : count[HF_SAMPLE_WITHOUT_SHAPE]) + !has_shape;
+}
+
 /* Measures the shape of sample i and writes its row, as an hf_built_take. */
 static void take_sample(void *context, long i, const hf_built_shape *shape, const hf_form_result *r)
 {
@@ -265,6 +274,7 @@ static void take_sample(void *context, long i, const hf_built_shape *shape, cons
     row[HF_TOLERANCE_STATUS] = r->status;
     for (int k = HF_TOLERANCE_FIRST; k < t->n_value; k++)
         row[k] = (double)NAN;
+    if (t->required) count_slack(t, r, row);
     if (r->status != HF_OK) return;
     value[HF_TOLERANCE_PSI] = psi_m_of(t, shape, r);
     value[HF_TOLERANCE_SLACK] = r->n_slack;
@@ -284,6 +294,7 @@ static void take_loaded(void *context, long i, const hf_built_shape *shape, cons
     hf_montecarlo *t = l->t;
     const hf_montecarlo_load_case *c = l->load_case;
     hf_surface_paths paths = {NAN, NAN, NAN, NAN};
+    count_slack(t, r, row_of(t, i));
     if (r->status != HF_OK) return; /* the values are NaN already */
     if (hf_required_needs_surface(t->required, true, c->state) &&
         hf_surface_measure_near(&c->design, t->surface, t->facets, &c->net.built.model, shape->position_m,
@@ -311,6 +322,34 @@ static void predict(void *context, int room, int i)
     for (int k = 0; k < n; k++)
         t->row[(first + k) * t->n_value + HF_TOLERANCE_LINEAR_PSI] =
             hf_covariance_psi_m(l, move + (size_t)k * l->n_dof);
+}
+
+#define TOUCH_SAMPLES 64 /* give a standard deviation within 9 % of the exact one */
+hf_status hf_montecarlo_find_touchiest(const hf_montecarlo *t, int *cable, double *deviation_N)
+{
+    const hf_built_linear *l = &t->linear;
+    const size_t n_cable = (size_t)t->built->model.n_cable;
+    double *z, *move, *strain, *change, *square, *more, worst = -1;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(z, t->n_z), HF_ARRAY(move, l->n_dof), HF_ARRAY(strain, n_cable),
+                           HF_ARRAY(change, n_cable), HF_ARRAY(square, n_cable), HF_ARRAY(more, l->n_scratch)));
+    for (long i = 0; i < TOUCH_SAMPLES; i++) {
+        hf_built_errors_draw(&t->errors, i, z);
+        hf_built_errors_strain(&t->errors, 1, z, strain, move);
+        hf_built_linear_apply(l, NULL, 1, strain, NULL, move, more);
+        hf_built_linear_tension(l, strain, move, change);
+        for (size_t e = 0; e < n_cable; e++)
+            square[e] += change[e] * change[e] / TOUCH_SAMPLES;
+    }
+    for (size_t e = 0; e < n_cable; e++) {
+        double ratio = sqrt(square[e]) / t->built->tension_N[e];
+        if (!(ratio > worst)) continue;
+        worst = ratio;
+        *cable = (int)e;
+        *deviation_N = sqrt(square[e]);
+    }
+    hf_arena_free_block(block);
+    return HF_OK;
 }
 
 /* ---- samples ---- */
@@ -342,6 +381,8 @@ hf_status hf_montecarlo_run(hf_montecarlo *t, double scale, long first, int n)
         if (net->has_shape)
             hf_built_batch_run(net->batch, hf_built_loaded_vary(net, &t->errors), first, n, make_loaded, take_loaded,
                                &loaded);
+        for (long i = first; !net->has_shape && i < first + n; i++)
+            count_slack(t, NULL, row_of(t, i));
     }
     if (t->required) find_margins(t, n);
     if (hf_built_must_stop(t->built)) return HF_INTERRUPTED;

@@ -39,7 +39,7 @@ typedef struct {
     /* Present number of rows. */
     int n_now;
     /* Values of a row: HF_TOLERANCE_COLUMNS and, with required, the margins [n_share] of its rows with a share, then
-     * value [n_column] and item [n_column] of each load case. */
+     * value [n_column] and item [n_column] of each load case, and the counts HF_SAMPLE_... over all load cases. */
     int n_value;
     double *row;     /* [n_chunk][n_value] results of the samples */
     double *z;       /* [n_chunk][n_z] numbers of each sample */
@@ -83,12 +83,24 @@ static inline size_t hf_montecarlo_value_at(const hf_required *q, int state, boo
     return (size_t)(HF_TOLERANCE_COLUMNS + q->n_share + (2 * state + is_item) * q->n_column);
 }
 
+/* Returns the offset of the counts over all load cases: the largest number of slack cables in one of them, and the
+ * number of load cases without a shape. */
+enum { HF_SAMPLE_SLACK, HF_SAMPLE_WITHOUT_SHAPE, HF_SAMPLE_COUNTS };
+static inline size_t hf_montecarlo_count_at(const hf_required *q)
+{
+    return hf_montecarlo_value_at(q, q->n_state, false);
+}
+
 /* Returns whether samples have a value of this measure. */
 bool hf_montecarlo_measures(const hf_surface_settings *surface, const hf_facets *facets, hf_tolerance_measure measure);
 
 /* Solves and measures the samples first to first + n - 1, n <= n_chunk, with all errors multiplied by `scale`. Writes
  * their rows to montecarlo->row. Returns HF_OK; HF_INTERRUPTED when built->stop requests it; HF_NO_MEMORY. */
 hf_status hf_montecarlo_run(hf_montecarlo *montecarlo, double scale, long first, int n);
+
+/* Finds the cable whose tension the errors change most, relative to its tension without errors, to first order.
+ * *deviation_N becomes the standard deviation of its tension, of 64 samples. Returns HF_OK or HF_NO_MEMORY. */
+hf_status hf_montecarlo_find_touchiest(const hf_montecarlo *montecarlo, int *cable, double *deviation_N);
 
 /* Limits of the search for a scale: doublings, halvings, and all scales that it tries, including the first. */
 enum { HF_SCALE_DOUBLINGS = 10, HF_SCALE_HALVINGS = 7, HF_SCALE_YIELDS = 1 + HF_SCALE_DOUBLINGS + HF_SCALE_HALVINGS };

@@ -183,7 +183,8 @@ hf_status hf_statistics_order(const hf_statistics_rows *rows, int column, double
 
 /* Holds the sums over all rows. x is psi^2 of the linear model, y is psi^2 of the solved sample. */
 typedef struct {
-    int n_share; /* number of rows of `requirements` with a share */
+    int n_share;     /* number of rows of `requirements` with a share */
+    size_t count_at; /* of the counts over all load cases in a row; 0: there are none */
     hf_tolerance_summary *to;
     long n[HF_TOLERANCE_N_MEASURE], n_both, met, bin[HF_TOLERANCE_BINS];
     double sum[HF_TOLERANCE_N_MEASURE], square[HF_TOLERANCE_N_MEASURE]; /* of values, of (value - mean)^2 */
@@ -206,6 +207,10 @@ static void add_row(void *context, const double *row)
     if (row[HF_TOLERANCE_STATUS] != HF_OK) s->to->n_failed++;
     s->to->n_with_slack += row[HF_TOLERANCE_FIRST + HF_TOLERANCE_SLACK] > 0;
     s->to->n_with_loose += row[HF_TOLERANCE_FIRST + HF_TOLERANCE_LOOSE] > 0;
+    if (s->count_at) {
+        s->to->n_with_slack_in_any += row[s->count_at + HF_SAMPLE_SLACK] > 0;
+        s->to->n_failed_in_any += row[s->count_at + HF_SAMPLE_WITHOUT_SHAPE] > 0;
+    }
     bool meets = true;
     for (int k = 0; k < s->n_share; k++)
         meets &= row[hf_montecarlo_margin_at(k)] >= 0;
@@ -337,8 +342,11 @@ static void find_figures(const moments *s, int k, hf_tolerance_figures *f)
 hf_status hf_statistics_sum_up(const hf_montecarlo *t, const hf_statistics_rows *rows, hf_tolerance_summary *to)
 {
     const hf_covariance *c = &t->covariance;
-    moments s = {.n_share = t->required ? t->required->n_share : 0, .to = to};
-    *to = (hf_tolerance_summary){.samples = (int)rows->n, .nominal_psi_m = c->nominal_psi_m};
+    moments s = {.to = to};
+    if (t->required) s.n_share = t->required->n_share;
+    if (t->n_load_case) s.count_at = hf_montecarlo_count_at(t->required);
+    *to = (hf_tolerance_summary){
+        .samples = (int)rows->n, .nominal_psi_m = c->nominal_psi_m, .n_sampled_load_case = t->n_load_case};
     to->first_order_rms_psi_m = sqrt(c->nominal_psi_m * c->nominal_psi_m + c->spread_m2);
     HF_TRY(visit_rows(rows, add_row, &s));
     s.mean_y /= (double)s.n_both;

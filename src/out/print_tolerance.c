@@ -96,16 +96,21 @@ static void print_shares(const hf_tolerance_summary *t, FILE *f)
 void hf_print_tolerance(const hf_summary *s, hf_print_amount amount, FILE *f)
 {
     const hf_tolerance_summary *t = s->tolerance;
+    const char *where = s->n_load_case ? "nominal load case: " : "";
     if (isinf(t->psi_95_m))
-        fprintf(f, "  as built      fewer than 95 %% of %d samples have a shape; psi ", t->samples);
+        fprintf(f, "  as built      %sfewer than 95 %% of %d samples have a shape; psi ", where, t->samples);
     else {
-        fputs("  as built      psi at most ", f);
+        fprintf(f, "  as built      %spsi at most ", where);
         print_mm(f, t->psi_95_m);
-        fprintf(f, " in 95 %% of %d samples%s, ", t->samples, s->n_load_case ? " of the nominal load case" : "");
+        fprintf(f, " in 95 %% of %d samples, ", t->samples);
     }
     print_mm(f, t->nominal_psi_m);
-    fprintf(f, " without errors; %d with slack cables, %d with loose nodes, %d without a shape; %s\n", t->n_with_slack,
-            t->n_with_loose, t->n_failed, hf_print_duration(t->tolerance_wall_s).text);
+    fprintf(f, " without errors; %d with slack cables, %d with loose nodes, %d without a shape; ", t->n_with_slack,
+            t->n_with_loose, t->n_failed);
+    if (t->n_sampled_load_case)
+        fprintf(f, "in any of %d load cases: %d with slack cables, %d without a shape; ", 1 + t->n_sampled_load_case,
+                t->n_with_slack_in_any, t->n_failed_in_any);
+    fprintf(f, "%s\n", hf_print_duration(t->tolerance_wall_s).text);
     for (int k = 0; amount == HF_PRINT_VERBOSE && k < HF_TOLERANCE_SLACK; k++)
         print_measure(&t->figure[k], k, f);
     if (amount == HF_PRINT_VERBOSE) print_first_order(t, f);

@@ -336,27 +336,6 @@ static hf_status open_montecarlo(job *j, hf_messages *messages)
 
 /* ---- results ---- */
 
-/* Returns the cable for which the error of its own cut is largest relative to its tension. *sigma_m is that error.
- * *by_error_N is the change of its tension with fixed ends, EA sigma/length, an upper bound. */
-static int find_touchiest(const job *j, double *by_error_N, double *sigma_m)
-{
-    const hf_problem *p = j->problem;
-    const hf_tolerance_settings *t = &p->settings.tolerance;
-    const hf_workspace *w = j->shape;
-    int touchiest = 0;
-    double most = -1;
-    for (int e = 0; e < p->model.n_cable; e++) {
-        double sigma = hypot(t->sigma_cut_m, t->sigma_cut_ratio * w->length_m[e]);
-        double error_N = j->built.scene.EA_N[e] * sigma / w->length_m[e], part = error_N / w->tension_N[e];
-        if (!(part > most)) continue;
-        most = part;
-        touchiest = e;
-        *by_error_N = error_N;
-        *sigma_m = sigma;
-    }
-    return touchiest;
-}
-
 /* Returns the number of slack cables of the design. *first becomes the first of them. */
 static int count_slack(const job *j, int *first)
 {
@@ -371,29 +350,31 @@ static int count_slack(const job *j, int *first)
 }
 
 /* Warns about samples with slack cables: such a net is not the one that was designed. */
-static void warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messages *messages)
+static hf_status warn_of_slack(const job *j, const hf_tolerance_summary *t, hf_messages *messages)
 {
     const hf_scene *scene = &j->problem->scene;
-    double error_N = 0, sigma_m = 0;
+    bool is_nominal = t->n_with_slack > SLACK_DOUBT * t->samples;
+    int e = 0, n = is_nominal ? t->n_with_slack : t->n_with_slack_in_any, n_slack = count_slack(j, &e);
     char why[320] = "";
-    int e = 0;
-    if (t->n_with_slack <= SLACK_DOUBT * t->samples) return;
-    int n_slack = count_slack(j, &e);
-    if (n_slack == 0) e = find_touchiest(j, &error_N, &sigma_m);
-    if (n_slack)
+    if (n <= SLACK_DOUBT * t->samples) return HF_OK;
+    if (!is_nominal)
+        snprintf(why, sizeof why, " in a load case");
+    else if (n_slack)
         snprintf(why, sizeof why, ": %d %s slack in the design already, such as '%.80s'", n_slack,
                  n_slack == 1 ? "is" : "are", scene->cable_id[e]);
-    else if (error_N > 0)
-        snprintf(
-            why, sizeof why,
-            ": an error of %.3g mm in the %.3g m of cable '%.80s' (EA %.3g N) changes its tension of %.3g N by up to "
-            "%.3g N",
-            sigma_m * 1e3, j->shape->length_m[e], scene->cable_id[e], j->built.scene.EA_N[e], j->shape->tension_N[e],
-            error_N);
+    else {
+        double deviation_N = 0;
+        HF_TRY(hf_montecarlo_find_touchiest(&j->montecarlo, &e, &deviation_N));
+        snprintf(why, sizeof why,
+                 ": to first order, the errors change the tension of %.3g N in cable '%.80s' (EA %.3g N) with a "
+                 "standard deviation of %.3g N",
+                 j->shape->tension_N[e], scene->cable_id[e], j->built.scene.EA_N[e], deviation_N);
+    }
     hf_warning(messages,
                "tolerance: cables are slack in %d of %d samples%s. Raise the minimum tensions (form.pretension_N, "
                "optimize.limits), use cables with a lower EA, or reduce the errors (tolerance.sigma_cut_m)",
-               t->n_with_slack, t->samples, why);
+               n, t->samples, why);
+    return HF_OK;
 }
 
 static int scale_samples(const hf_tolerance_settings *t)
@@ -416,13 +397,13 @@ static hf_status sum_up(job *j, hf_store *store, hf_summary *summary, hf_message
         j->montecarlo.tell_context = j;
         status = hf_montecarlo_find_scale(&j->montecarlo, to->scale_samples, &to->sigma_scale, &to->scale_bound);
     }
+    if (status == HF_OK) status = warn_of_slack(j, to, messages);
     if (status != HF_OK) { /* the summary then says nothing about samples */
         free(to);
         summary->tolerance = NULL;
     }
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "tolerance: out of memory");
     HF_TRY(status);
-    warn_of_slack(j, to, messages);
     to->tolerance_wall_s = hf_clock_s() - j->begin_s;
     return hf_store_tolerance(store, &j->montecarlo, &rows, messages);
 }

@@ -288,6 +288,20 @@ def judge_samples(result, row, said):
     return quantile, 0.0
 
 
+def count_slack(file):
+    """Demands the counts over all load cases, if the samples have the slack cables of all of them."""
+    of = file.get("tolerance/load_case", {})
+    if not of or not all("slack_cables" in of[name] for name in of):
+        return
+    said = file["tolerance"].attrs
+    slack = np.array([of[name]["slack_cables"][:] for name in of])
+    assert said["n_sampled_load_case"] == len(of) - 1
+    if len(of) > 1:
+        assert said["n_with_slack_in_any"] == (np.nan_to_num(slack) > 0).any(0).sum(), said["n_with_slack_in_any"]
+        assert said["n_failed_in_any"] == np.isnan(slack).any(0).sum(), said["n_failed_in_any"]
+        print(f"{said['n_with_slack']} samples with slack cables, {said['n_with_slack_in_any']} in any load case")
+
+
 def judge_nominal(result, row, said):
     margin = []
     for state in states_of(result, row):
@@ -368,6 +382,7 @@ def main(path):
         result, of = Result(file), file["requirements"]
         if any(key in result.case.get("tolerance", {}) for key, _, _ in LOAD_ERROR):
             draw_samples(result)
+        count_slack(file)
         table = {key: words(of[key]) if of[key].dtype.kind in "OS" else of[key][:].tolist() for key in of}
         for k in range(len(table["figure"])):
             said = {key: table[key][k] for key in table}

@@ -104,6 +104,20 @@ START_TEST(two_cables_in_line)
     variance += 1e-6 * (by_far * by_far + (1 - by_far) * (1 - by_far));
     variance += 2 * 1e-6 * (across * across + (1 - across) * (1 - across));
     ck_assert_double_eq_tol(s.m.covariance.spread_m2 / variance, 1, 1e-7); /* the differences */
+    /* The tension of both is 20 N. A length changes it by -(1 + T/EA)/D, D = l1/EA1 + l2/EA2. */
+    double D = cut[0] / EA[0] + cut[1] / EA[1], part[2] = {cut[0] / EA[0] / D, cut[1] / EA[1] / D}, deviation_N = 0;
+    double square = 2e-6 / (D * D), shared[2] = {0};
+    for (int e = 0; e < 2; e++) {
+        double by_length = (1 + 20 / EA[e]) / D, ratio_N = 1e-4 * by_length * cut[e], EA_N = 0.02 * 20 * part[e];
+        square += pow(2e-4 * by_length, 2) + 0.7 * ratio_N * ratio_N + 0.7 * EA_N * EA_N;
+        shared[0] += ratio_N;
+        shared[1] += EA_N;
+    }
+    square += 0.3 * shared[0] * shared[0] + 0.3 * shared[1] * shared[1];
+    int touchiest = -1;
+    ck_assert_int_eq(hf_montecarlo_find_touchiest(&s.m, &touchiest, &deviation_N), HF_OK);
+    ck_assert_double_eq_tol(deviation_N / sqrt(square), 1, 0.2); /* of 64 samples: 0.09 is one deviation */
+    ck_assert(touchiest == 0 || touchiest == 1);
     hf_montecarlo_free(&s.m);
     hf_workspace_free(&s.work);
     hf_built_free(&s.built);
