@@ -57,13 +57,15 @@ static void show_generation(FILE *f, const hf_run_progress *now)
 
 static void show_step(FILE *f, const hf_run_progress *now)
 {
-    fprintf(f, "Levenberg-Marquardt: step %d/%d  ", now->step, now->max_steps);
+    fprintf(f, "Levenberg-Marquardt: step %d of at most %d  ", now->step, now->max_steps);
     if (now->violation > 0)
         fprintf(f, "outside the limits and requirements by %.3g (sum of relative distances)", now->violation);
     else
         fprintf(f, "psi %.4f mm", now->best_psi_m * 1e3);
     if (isfinite(now->merit) && now->violation == 0) fprintf(f, ", merit %.6g", now->merit);
-    if (now->step > now->first_step) fprintf(f, "  at most %s left", hf_print_duration(left_s(now)).text);
+    /* the time left is not known: most refinements converge long before the last step */
+    if (now->step > now->first_step)
+        fprintf(f, "  %s a step", hf_print_duration(now->elapsed_s / (now->step - now->first_step)).text);
 }
 
 static void show_front(FILE *f, const hf_run_progress *now)

@@ -246,6 +246,16 @@ static double within(double value, double low, double high)
     return value < low ? low : value > high ? high : value;
 }
 
+void hf_variables_scales(const hf_model *m, const double *initial, const double *design, double *least, double *most)
+{
+    *least = *most = (double)NAN;
+    for (int k = 0; m->variable && k < m->n_variable; k++) {
+        if (!m->variable[k].scales || initial[k] == 0) continue;
+        *least = fmin(*least, design[k] / initial[k]); /* fmin and fmax ignore NaN */
+        *most = fmax(*most, design[k] / initial[k]);
+    }
+}
+
 void hf_variables_bound(const hf_optimize_settings *s, const hf_model *m, int k, double base, double *lower,
                         double *upper, double *reach)
 {

@@ -20,6 +20,11 @@ hf_status hf_variables_apply(const hf_scene *scene, const hf_optimize_settings *
 void hf_variables_read(const hf_model *model, const double *q_N_per_m, const double *tension_N, const double *length_m,
                        double *value);
 
+/* Finds the smallest and the largest factor by which a design scales variables with `link: scale`, from their initial
+ * values. Both become NaN without such variables. */
+void hf_variables_scales(const hf_model *model, const double *initial, const double *design, double *least,
+                         double *most);
+
 /* Writes the bounds of design variable i_variable around its initial value `base`. *reach is the distance from it over
  * which the first designs are spread. */
 void hf_variables_bound(const hf_optimize_settings *settings, const hf_model *model, int i_variable, double base,

@@ -669,14 +669,20 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const cha
                     hf_no_design_cap(p, INFINITY, hint));
 }
 
-const char *hf_no_design_to_refine(hf_problem *p, const double *design, hf_status status, const char *advice,
-                                   char text[HF_NO_DESIGN_SIZE])
+const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const double *design, hf_status status,
+                                   const char *advice, char text[HF_NO_DESIGN_SIZE])
 {
     hf_form_result start;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
     name_broken(p, design, &start, broken);
     const char *wider = p->model.variable ? "Widen the ranges and bounds of optimize.variables, " : "";
-    const char *where = hf_problem_constraints_of(p) ? "at the nearest design, " : "";
+    char where[128] = "", factor[64] = "";
+    double least, most;
+    hf_variables_scales(&p->model, initial, design, &least, &most);
+    if (!isnan(least)) snprintf(factor, sizeof factor, ", which scales variables by %.4g", least);
+    if (most > least * (1 + 1e-9))
+        snprintf(factor, sizeof factor, ", which scales variables by %.4g to %.4g", least, most);
+    if (hf_problem_constraints_of(p)) snprintf(where, sizeof where, "at the nearest design%s, ", factor);
     snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s. %s%s%s", where,
              hf_status_text(status), broken, *advice ? begin_with(advice, first) : wider,
              *advice || *wider ? "or loosen the limits" : "Loosen the limits",

@@ -36,10 +36,11 @@ hf_status hf_reach_check(const hf_problem *problem, hf_messages *messages);
 hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, const char *advice,
                                hf_messages *messages);
 
-/* Writes why Levenberg-Marquardt refused to start from this design [n_variable] with this status, with the advice of
- * hf_feasible_check. Overwrites the shape in the problem's workspace. Returns text. */
-const char *hf_no_design_to_refine(hf_problem *problem, const double *design, hf_status status, const char *advice,
-                                   char text[HF_NO_DESIGN_SIZE]);
+/* Writes why Levenberg-Marquardt found no feasible design and ended with this status at this one, the nearest. Both
+ * designs have [n_variable] values; `advice` is that of hf_feasible_check. Overwrites the shape in the problem's
+ * workspace. Returns text. */
+const char *hf_no_design_to_refine(hf_problem *problem, const double *initial, const double *design, hf_status status,
+                                   const char *advice, char text[HF_NO_DESIGN_SIZE]);
 
 /* Writes "; 10 is the default of ..." if the ratio exceeds a cap that the case does not set, because its author may not
  * know that cap. Otherwise writes "". Returns text. */

@@ -10,6 +10,7 @@
 #include "run/problem_parts.h"
 #include "run/requirements_stage.h"
 #include "solve/tension_programme.h"
+#include "surface/facet_mesh.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -488,6 +489,27 @@ hf_status hf_feasible_check_bounds(const hf_problem *p, const hf_problem_source 
     return HF_OK;
 }
 
+/* Warns about rows on facets that the target shape misses: its facets are too large. */
+static hf_status check_facets(const hf_problem *p, hf_messages *messages)
+{
+    const hf_facet_shape target = {.position_m = p->scene.position_m};
+    hf_surface_measures m = {.facet_half_path_rms_m = NAN};
+    for (int i = 0; i < p->settings.n_requirement; i++) {
+        const hf_requirement_settings *r = &p->settings.requirement[i];
+        char place[HF_LOCATION_SIZE];
+        if (r->figure != HF_REQUIRED_FACETS || isnan(r->at_most) || p->facets.n_facet == 0) continue;
+        if (isnan(m.facet_half_path_rms_m)) HF_TRY(hf_facet_measure(&p->surface, &p->facets, &target, &m));
+        double rms_m = r->feed == HF_REFOCUSED ? m.facet_fit_half_path_rms_m : m.facet_half_path_rms_m;
+        if (!(rms_m > r->at_most)) continue;
+        hf_warning(messages,
+                   "%s: at the target positions, the facets already have %.4g mm, and the bound is %.4g mm. Use about "
+                   "%.0f facets instead of %d, or loosen the bound",
+                   hf_config_place(&p->settings, place, "requirements.%d", i), rms_m * 1e3, r->at_most * 1e3,
+                   ceil(p->facets.n_facet * rms_m / r->at_most), p->facets.n_facet);
+    }
+    return HF_OK;
+}
+
 hf_status hf_feasible_check(const hf_problem *p, const hf_problem_source *source, char advice[HF_FEASIBLE_ADVICE_SIZE],
                             hf_messages *messages)
 {
@@ -500,5 +522,7 @@ hf_status hf_feasible_check(const hf_problem *p, const hf_problem_source *source
                                           advice, messages);
     hf_required_free(&required);
     hf_material_free(&masses);
+    if (status == HF_OK && check_facets(p, messages) != HF_OK)
+        return hf_error(messages, HF_NO_MEMORY, "out of memory for the surface errors");
     return status;
 }

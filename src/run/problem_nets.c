@@ -152,24 +152,29 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
 {
     const hf_constraints *c = p->objectives.constraints;
     char name[256];
-    int worst = -1;
+    int worst = -1, n_other = -1;
+    char others[48] = "";
     *text = '\0';
     for (int k = 0; c && k < c->n; k++) {
         double beyond = p->point.constraint[k] / c->unit[k];
+        n_other += beyond > 0;
         if (beyond > 0 && (worst < 0 || beyond > p->point.constraint[worst] / c->unit[worst])) worst = k;
     }
     if (worst < 0) return text;
+    if (n_other > 0) snprintf(others, sizeof others, ", and %d more are missed", n_other);
     int row = p->nets->constraints.row[worst];
     const hf_requirement_settings *r = &p->settings.requirement[row];
     /* A count is judged by tensions. */
     const char *unit = r->figure == HF_REQUIRED_SLACK ? "N" : hf_required_figure_unit[r->figure];
     if (fabs(p->point.constraint[worst] / c->unit[worst] / HF_BUILT_NO_VALUE - 1) < 1e-9) {
-        snprintf(text, size, ": bound of requirements.%d (%.160s) is missed, because the figure has no value", row,
-                 hf_requirement_name(r, name, sizeof name));
+        snprintf(text, size, ": bound of requirements.%d (%.160s) is missed, because the figure has no value%s", row,
+                 hf_requirement_name(r, name, sizeof name), others);
         return text;
     }
-    snprintf(text, size, ": bound of requirements.%d (%.160s) is missed by %.3g%s%s", row,
-             hf_requirement_name(r, name, sizeof name), p->point.constraint[worst], *unit ? " " : "", unit);
+    bool is_length = !strcmp(unit, "m");
+    snprintf(text, size, ": bound of requirements.%d (%.160s) is missed by %.3g%s%s%s", row,
+             hf_requirement_name(r, name, sizeof name), p->point.constraint[worst] * (is_length ? 1e3 : 1),
+             *unit ? " " : "", is_length ? "mm" : unit, others);
     return text;
 }
 

@@ -18,6 +18,7 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "linalg/lapack.h"
+#include "net/variables.h"
 #include "run/problem_parts.h"
 #include "run/stages.h"
 #include "run/tolerance_stage.h"
@@ -235,11 +236,7 @@ static void note_scale(const hf_run *r, hf_summary *s)
     const hf_model *m = &r->problem.model;
     const double *initial = r->optimiser.population.initial, *design = s->taken.point ? r->taken.design : r->design;
     if (!r->has_design || !m->variable || !initial || (s->front && !s->taken.point)) return;
-    for (int k = 0; k < m->n_variable; k++) {
-        if (!m->variable[k].scales || initial[k] == 0) continue;
-        s->scale_min = fmin(s->scale_min, design[k] / initial[k]); /* fmin and fmax ignore NaN */
-        s->scale_max = fmax(s->scale_max, design[k] / initial[k]);
-    }
+    hf_variables_scales(m, initial, design, &s->scale_min, &s->scale_max);
 }
 
 /* Writes the doubts about the result and its summary, and finishes the file. Returns `status`, or an error of the

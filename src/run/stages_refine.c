@@ -187,7 +187,7 @@ static bool wants_refine(const hf_run *r, const hf_summary *s)
 static hf_status tell_no_design(hf_run *r, hf_status status, hf_messages *messages)
 {
     char why[HF_NO_DESIGN_SIZE];
-    hf_no_design_to_refine(&r->problem, r->design, status, r->advice, why);
+    hf_no_design_to_refine(&r->problem, r->optimiser.population.initial, r->design, status, r->advice, why);
     if (!r->plan.kind) return hf_error(messages, HF_NO_FEASIBLE, "%s", why);
     hf_warning(messages, "%s", why);
     return HF_OK;

@@ -195,7 +195,9 @@ async function test(browser, page) {
   } else {
     await checkSummary(tab, made, page);
     const isOptimised = ["search", "refine", "front"].some((key) => key in made.summary);
-    assert.equal(/ variables,/.test(await tab.locator("#subtitle").textContent()), isOptimised);
+    const subtitle = await tab.locator("#subtitle").textContent();
+    assert.equal(/ variables,/.test(subtitle), isOptimised);
+    assert.equal(/before optimisation; the result scales variables by /.test(subtitle), made.summary.scale_min > 0);
     if (page.name === "chen2022") await checkWords(tab, made);
     if (page.name === "chen2022") await checkChange(browser, made, folder);
     const endless = await checkCharts(tab, 4, "#form-finding", /iteration \d+\s+ψ\s+[\d.]+.* mm/);

@@ -194,6 +194,10 @@ END_TEST
 START_TEST(a_net_that_hangs_loose_has_no_surface)
 {
     const char *out = temp("loose.h5");
+    HIFDM(0, "check", EXAMPLE, "--set", "load_cases.0.temperature_K=293");
+    ERR("load_cases.0.temperature_K: 293 K is the rise from the temperature at which the cables were cut.");
+    HIFDM(0, "check", EXAMPLE, "--set", "load_cases.0.temperature_K=200");
+    ck_assert_ptr_null(strstr(said.err, " is the rise from "));
     HIFDM(0, "run", EXAMPLE, "-o", out, "--set", "load_cases.0.temperature_K=-600", "--set",
           "load_cases.1.temperature_K=-600");
     HIFDM(0, "show", out, "--verbose");

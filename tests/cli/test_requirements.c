@@ -829,6 +829,8 @@ START_TEST(a_failed_search_leaves_verdicts)
     HIFDM(3, "run", dish, "-o", path, LACKS, "--set", set, "--set", "optimize.population=8", "--set",
           "optimize.generations=2");
     ERR("error: optimize: ");
+    ERR("requirements.1: at the target positions, the facets already have ");
+    if (_i == 0) ERR("at the nearest design, which scales variables by ");
     SHELL(0, "sed '/^optimize:/,$d' \"$1\" >\"$2\"", dish, temp("plain.yaml"));
     HIFDM(0, "run", temp("plain.yaml"), "-o", plain, LACKS);
     HIFDM(0, "show", plain, "--json");
@@ -841,6 +843,30 @@ START_TEST(a_failed_search_leaves_verdicts)
            "abs(a['requirements'][1]['error_bound'] / b['requirements'][1]['error_bound'] - 1) < 1e-3");
     HIFDM(0, "show", path);
     OUT("verdict: fail; 0 of 2 requirements pass, 2 fail; of the net after form-finding\n");
+}
+END_TEST
+
+/* The error of facets is in proportion to their area: as many facets as advised reach the bound, within 10 %. */
+START_TEST(facets_too_large_for_a_bound_are_reported)
+{
+    static const char facets[] = "requirements=[{figure: facets, at_most: %g, feed: %s}]";
+    const char *dish = source_path("configs/dish-8m.yaml");
+    const char *const feed[] = {"refocused", "fixed"};
+    const double bound_m[] = {0.43e-3, 1.66e-3}; /* 10 rings, 600 facets: 0.43 and 1.652 mm */
+    for (int k = 0; k < 2; k++) {
+        double has_mm, most_mm, n_facet;
+        HIFDM(0, "check", dish, "--set", "scene.paraboloid.rings=5", "--set",
+              keep(formatted(facets, bound_m[k], feed[k])));
+        const char *said_so = strstr(said.err, "requirements.0: at the target positions, the facets already have ");
+        ck_assert_msg(said_so != NULL, "%s", said.err);
+        ck_assert_int_eq(sscanf(strstr(said_so, "have "), "have %lf mm, and the bound is %lf mm. Use about %lf facets",
+                                &has_mm, &most_mm, &n_facet),
+                         3);
+        ck_assert(has_mm > most_mm && fabs(n_facet - 600) < 60);
+        HIFDM(0, "check", dish, "--set", "scene.paraboloid.rings=11", "--set",
+              keep(formatted(facets, bound_m[k], feed[k])));
+        ck_assert_ptr_null(strstr(said.err, "the facets already have"));
+    }
 }
 END_TEST
 
@@ -887,6 +913,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_test(tests, points_of_a_study_have_verdicts);
     tcase_add_loop_test(tests, a_slack_start_is_scaled_into_the_requirements, 0, 2);
     tcase_add_loop_test(tests, a_failed_search_leaves_verdicts, 0, 2);
+    tcase_add_test(tests, facets_too_large_for_a_bound_are_reported);
     tcase_add_test(tests, bounds_that_exclude_the_start_are_reported);
     return suite;
 }

@@ -20,10 +20,15 @@ function section(id, name, ...children) {
 
 function writeHead() {
   document.getElementById("title").textContent = shown(other ? `${thisName} and ${otherName}` : data.title);
+  const [least, most] = [summary.scale_min, summary.scale_max].map(fmt);
+  const scaled = summary.scale_min > 0 && (least === most ? least : `${least} to ${most}`);
   const found =
     `${fmtCount(net.n_node)} nodes (${fmtCount(data.n_free)} free), ${fmtCount(net.n_cable)} cables, ` +
     (data.n_variable ? `${fmtCount(data.n_variable)} design variables, ` : "") +
-    (data.pretension_N === null ? "every cable with its own law" : `pretension ${fmt(data.pretension_N)} N`);
+    (data.pretension_N === null
+      ? "each cable with a law of its own"
+      : `pretension ${fmt(data.pretension_N)} N${scaled ? " before optimisation" : ""}`) +
+    (scaled ? `; the result scales variables by ${scaled}` : "");
   const truss = summary.truss
     ? `; truss of ${fmtCount(summary.truss.nodes)} nodes, ${fmtCount(summary.truss.members)} members, ` +
       `${fmt(summary.truss.mass_kg)} kg`

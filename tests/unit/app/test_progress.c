@@ -113,18 +113,18 @@ static void demand(hf_progress_mode mode, const char *wanted)
 
 START_TEST(a_line_is_written_anew_ten_times_a_second)
 {
-    demand(HF_PROGRESS_LINE,
-           CLEAR "generation 1/100  best psi 2.0000 mm  0 evaluations/s  at most 0 us left" CLEAR
-                 "generation 20/100  best psi 1.0000 mm  25 evaluations/s  at most 2 min 40 s left" CLEAR
-                 "generation 21/100  best psi 1.0000 mm  26 evaluations/s  at most 2 min 32 s left" CLEAR
-                 "Levenberg-Marquardt: step 4/200  psi 1.0000 mm" CLEAR
-                 "Levenberg-Marquardt: step 5/200  outside the limits and requirements by 1.57 (sum of relative "
-                 "distances)  at most 1 h 37 min left" CLEAR
-                 "Levenberg-Marquardt: step 6/200  psi 0.9000 mm, merit 0.0012  at most 50 min 7 s left" CLEAR
-                 "front: point 0/21  0 steps of Levenberg-Marquardt  0 us so far" CLEAR
-                 "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far" CLEAR
-                 "first order, before 1000 samples" CLEAR "sample 128/1000  2 samples/s  7 min 16 s left" CLEAR
-                 "sample 640/1000; the yield with 0.5 times the errors" CLEAR);
+    demand(HF_PROGRESS_LINE, CLEAR
+           "generation 1/100  best psi 2.0000 mm  0 evaluations/s  at most 0 us left" CLEAR
+           "generation 20/100  best psi 1.0000 mm  25 evaluations/s  at most 2 min 40 s left" CLEAR
+           "generation 21/100  best psi 1.0000 mm  26 evaluations/s  at most 2 min 32 s left" CLEAR
+           "Levenberg-Marquardt: step 4 of at most 200  psi 1.0000 mm" CLEAR
+           "Levenberg-Marquardt: step 5 of at most 200  outside the limits and requirements by 1.57 (sum of relative "
+           "distances)  30.0 s a step" CLEAR
+           "Levenberg-Marquardt: step 6 of at most 200  psi 0.9000 mm, merit 0.0012  15.5 s a step" CLEAR
+           "front: point 0/21  0 steps of Levenberg-Marquardt  0 us so far" CLEAR
+           "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far" CLEAR
+           "first order, before 1000 samples" CLEAR "sample 128/1000  2 samples/s  7 min 16 s left" CLEAR
+           "sample 640/1000; the yield with 0.5 times the errors" CLEAR);
 }
 END_TEST
 
@@ -132,8 +132,8 @@ START_TEST(a_log_has_a_line_every_half_minute)
 {
     demand(HF_PROGRESS_LOG,
            "generation 20/100  best psi 1.0000 mm  25 evaluations/s  at most 2 min 40 s left\n"
-           "Levenberg-Marquardt: step 5/200  outside the limits and requirements by 1.57 (sum of relative "
-           "distances)  at most 1 h 37 min left\n"
+           "Levenberg-Marquardt: step 5 of at most 200  outside the limits and requirements by 1.57 (sum of relative "
+           "distances)  30.0 s a step\n"
            "front: point 3/21  70 steps of Levenberg-Marquardt  1 min 1 s so far\n"
            "sample 128/1000  2 samples/s  7 min 16 s left\n"
            "sample 640/1000; the yield with 0.5 times the errors\n");
