@@ -41,7 +41,7 @@ typedef struct {
     hf_front_mark mark;     /* whether the point is on the front, dominated or failed */
     int steps;              /* number of steps of Levenberg-Marquardt; 0 for the genetic algorithm */
     bool is_converged;      /* true: Levenberg-Marquardt has converged; false: there is no multiplier */
-    hf_judgement judgement; /* on the rows of `requirements` without a share; n_required is 0 if there are none */
+    hf_judgement judgement; /* on the rows of `requirements`; n_required is 0 if there are none */
 } hf_front_point;
 
 /* Contains a Pareto front and its designs. */

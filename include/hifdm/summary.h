@@ -231,6 +231,10 @@ void hf_summary_write_json(const hf_summary *summary, hf_status status, const ch
  * status of the whole run. If the run has not ended, the function returns the status of the form-finding. */
 hf_status hf_summary_status(const hf_summary *summary);
 
+/* Returns the judgement on the result by the requirements. If the run has found a Pareto front, the result is the point
+ * that ranks first. The member `requirement` of the summary then refers to the net after form-finding. */
+hf_judgement hf_summary_judge(const hf_summary *summary);
+
 /* Returns the word for the algorithm of a stage. The word is "ga" or "nsga2" for the search and "lm" for the
  * refinement. For other stages, the word is "". */
 const char *hf_summary_algorithm(const hf_summary *summary, hf_stage stage);

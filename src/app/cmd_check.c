@@ -355,6 +355,9 @@ static void print_tolerance_time(const hf_check *c, FILE *f)
     else
         fprintf(f, "                as built: first order some %s of processor time, counted; samples not tried\n",
                 hf_print_duration(t->begin_s).text);
+    if (c->n_judged)
+        fprintf(f, "                verdicts of up to %d points of the front by samples: about %s\n", c->n_judged,
+                hf_print_duration(c->judged_s).text);
     if (!t->scale_yields) return;
     fprintf(f, "                tolerance.find_scale: up to %d yields of %d nets more, most of them ended early",
             t->scale_yields, t->scale_samples);

@@ -22,13 +22,17 @@ static hf_status check_tasks(const hf_options *o, hf_messages *messages)
 
 static hf_status judge_strictly(const hf_summary *s, hf_messages *messages)
 {
-    hf_judgement of = hf_requirements_judge(s->n_requirement, s->requirement);
+    hf_judgement of = hf_summary_judge(s);
     if (!s->finished) return HF_OK; /* a task of several */
     if (s->n_requirement == 0)
         return hf_error(messages, HF_BAD_USAGE,
                         "--strict checks requirements, but the case has none: add the list "
                         "`requirements`, or remove the option");
     if (of.n_failed == 0) return HF_OK;
+    if (s->front && hf_front_is_judged(s->front))
+        return hf_error(messages, HF_REQUIREMENT_FAILED,
+                        "every point of the front fails a requirement; point %d ranks first and fails %d of %d",
+                        hf_front_suggested(s->front), of.n_failed, of.n_required);
     return hf_error(messages, HF_REQUIREMENT_FAILED, "the result fails %d of %d requirements", of.n_failed,
                     s->n_requirement);
 }

@@ -108,13 +108,40 @@ static void print_row(const hf_requirement_verdict *v, int width, FILE *f)
     fputc('\n', f);
 }
 
+/* Begins the line of a verdict with its colour. */
+static void begin_verdict(hf_verdict verdict, hf_print_style style, FILE *f)
+{
+    const char *colour = verdict == HF_VERDICT_FAIL        ? HF_PRINT_RED
+                         : verdict == HF_VERDICT_UNDECIDED ? HF_PRINT_YELLOW
+                                                           : "";
+    if (style.has_colour) fprintf(f, "%s%s", HF_PRINT_BOLD, colour);
+}
+
+/* Prints the verdict on a front: that of the point that ranks first. */
+static void print_front(const hf_summary *s, hf_print_style style, FILE *f)
+{
+    const hf_front_table *t = s->front;
+    hf_judgement first = hf_summary_judge(s);
+    hf_verdict verdict = hf_judgement_verdict(&first);
+    begin_verdict(verdict, style, f);
+    fprintf(f, "verdict: %s; %d of %d points of the front pass, %d fail", hf_verdict_word[verdict],
+            t->n_verdict[HF_VERDICT_PASS], t->n_point, t->n_verdict[HF_VERDICT_FAIL]);
+    if (t->n_verdict[HF_VERDICT_UNDECIDED]) fprintf(f, ", %d undecided", t->n_verdict[HF_VERDICT_UNDECIDED]);
+    fprintf(f, "; point %d ranks first", hf_front_suggested(t));
+    fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
+}
+
 void hf_print_requirements(const hf_summary *s, hf_print_style style, FILE *f)
 {
     const hf_requirement_verdict *row[HF_REQUIREMENT_ROWS_MAX];
     int n = s->n_requirement, width = 0, n_shown = 0;
     hf_judgement of = hf_requirements_judge(n, s->requirement);
+    hf_verdict all = hf_judgement_verdict(&of);
+    bool is_front = s->front && hf_front_is_judged(s->front), is_form = s->front || s->status == HF_NO_FEASIBLE;
     char name[256];
     if (n == 0) return;
+    if (is_front) print_front(s, style, f);
+    if (is_front && !style.verbose) return;
     for (int i = 0; i < n; i++)
         row[i] = &s->requirement[i];
     qsort(row, (size_t)n, sizeof *row, compare_rows);
@@ -124,15 +151,14 @@ void hf_print_requirements(const hf_summary *s, hf_print_style style, FILE *f)
         int length = (int)strlen(hf_requirement_name(&row[i]->row, name, sizeof name));
         if (length > width) width = length;
     }
-    hf_verdict all = hf_judgement_verdict(&of);
-    const char *colour = all == HF_VERDICT_FAIL ? HF_PRINT_RED : all == HF_VERDICT_UNDECIDED ? HF_PRINT_YELLOW : "";
-    if (style.has_colour) fprintf(f, "%s%s", HF_PRINT_BOLD, colour);
-    fprintf(f, "verdict: %s; %d of %d requirements pass", hf_verdict_word[all],
+    if (!is_front) begin_verdict(all, style, f);
+    fprintf(f, "%s%s; %d of %d requirements pass",
+            is_front ? "  net after form-finding: " : "verdict: ", hf_verdict_word[all],
             of.n_required - of.n_failed - of.n_undecided, of.n_required);
     if (of.n_failed) fprintf(f, ", %d fail%s", of.n_failed, of.n_failed == 1 ? "s" : "");
     if (of.n_undecided) fprintf(f, ", %d undecided", of.n_undecided);
-    if (s->front || s->status == HF_NO_FEASIBLE) fputs("; of the net after form-finding", f);
-    fputs(style.has_colour ? HF_PRINT_PLAIN "\n" : "\n", f);
+    if (is_form && !is_front) fputs("; of the net after form-finding", f);
+    fputs(style.has_colour && !is_front ? HF_PRINT_PLAIN "\n" : "\n", f);
     for (int i = 0; i < n_shown; i++)
         print_row(row[i], width, f);
     if (n_shown < n)

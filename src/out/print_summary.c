@@ -477,12 +477,12 @@ static void print_front_point(const hf_summary *s, const char *name, int row, FI
     print_front_values(s, name, s->front->index[row] + 1, p->objective, p, f);
 }
 
-/* Prints the point that ranks first by its verdicts, unless it is the knee or an end. */
-static void print_front_first(const hf_summary *s, FILE *f)
+/* Prints the point that ranks first by its verdicts, unless it is already printed as the knee or an end. */
+static void print_front_first(const hf_summary *s, bool is_short, FILE *f)
 {
     const hf_front_table *t = s->front;
     bool is_shown = t->knee >= 0 && t->index[t->knee] == t->suggested;
-    for (int k = 0; k < t->n_objective; k++)
+    for (int k = 0; k < t->n_objective && !is_short; k++)
         is_shown |= t->end[k] >= 0 && t->index[t->end[k]] == t->suggested;
     if (!is_shown) print_front_values(s, "first", t->suggested + 1, t->first.objective, &t->first, f);
 }
@@ -491,12 +491,8 @@ static void print_front_first(const hf_summary *s, FILE *f)
 static void print_front_verdicts(const hf_summary *s, FILE *f)
 {
     const int *n = s->front->n_verdict;
-    int n_share = 0;
-    for (int i = 0; i < s->n_requirement; i++)
-        n_share += !isnan(s->requirement[i].row.share);
     fprintf(f, "; requirements: %d pass, %d fail, %d undecided", n[HF_VERDICT_PASS], n[HF_VERDICT_FAIL],
             n[HF_VERDICT_UNDECIDED]);
-    if (n_share) fprintf(f, ", %d row%s about samples not judged", n_share, n_share == 1 ? "" : "s");
 }
 
 /* Prints the numbers of points of the front and the units of the slopes. */
@@ -530,7 +526,7 @@ static void print_front(const hf_summary *s, const char *path, bool is_short, FI
     for (int k = 0; k < t->n_objective && !is_one && !is_short; k++)
         if (t->end[k] >= 0) print_front_point(s, "end", t->end[k], f);
     if (t->knee >= 0) print_front_point(s, "knee", t->knee, f);
-    if (hf_front_is_judged(t) && !is_short && !is_one) print_front_first(s, f);
+    if (hf_front_is_judged(t) && !is_one) print_front_first(s, is_short, f);
     if (path && s->finished && point)
         hf_print_line(
             f, "                to make a point the result, run the same command with --point %s:%d -o point%d.h5",
@@ -744,13 +740,14 @@ static void print_short(const hf_summary *s, const char *path, hf_print_style st
     fprintf(f, "  case          %s; ", title);
     print_net(s, result, f);
     if (s->has_truss) print_truss(s, result, true, f);
-    if (s->front)
+    if (s->front) { /* load cases and samples are those of no point of the front */
         print_front(s, path, true, f);
-    else
+    } else {
         print_stages(s, result, true, f);
-    print_errors(s, result, true, f);
-    print_worst_load_cases(s, f);
-    if (s->tolerance) hf_print_tolerance(s, HF_PRINT_SHORT, f);
+        print_errors(s, result, true, f);
+        print_worst_load_cases(s, f);
+        if (s->tolerance) hf_print_tolerance(s, HF_PRINT_SHORT, f);
+    }
     print_end(s, path, style, true, f);
 }
 

@@ -96,11 +96,11 @@ static void print_shares(const hf_tolerance_summary *t, FILE *f)
 void hf_print_tolerance(const hf_summary *s, hf_print_amount amount, FILE *f)
 {
     const hf_tolerance_summary *t = s->tolerance;
-    const char *where = s->n_load_case ? "nominal load case: " : "";
+    fprintf(f, "  as built      %s", s->n_load_case ? "nominal load case: " : "");
     if (isinf(t->psi_95_m))
-        fprintf(f, "  as built      %sfewer than 95 %% of %d samples have a shape; psi ", where, t->samples);
+        fprintf(f, "fewer than 95 %% of %d samples have a shape; psi ", t->samples);
     else {
-        fprintf(f, "  as built      %spsi at most ", where);
+        fputs("psi at most ", f);
         print_mm(f, t->psi_95_m);
         fprintf(f, " in 95 %% of %d samples, ", t->samples);
     }

@@ -215,6 +215,17 @@ static hf_status time_load_cases(hf_check *c, hf_messages *messages)
     return HF_OK;
 }
 
+/* Returns the maximum number of points of a front that rows with a share judge. */
+static int count_judged(const hf_check *c)
+{
+    const hf_case *s = &c->problem.settings;
+    bool has_share = false;
+    for (int i = 0; i < s->n_requirement; i++)
+        has_share |= !isnan(s->requirement[i].share);
+    if (!has_share || s->optimize.n_front == 0 || !c->optimizes) return 0;
+    return c->is_refine_result ? s->optimize.front_points : s->optimize.population;
+}
+
 /* Finds the time of the as-built samples, at the shape of form-finding. */
 static void time_tolerance(hf_check *c)
 {
@@ -227,7 +238,9 @@ static void time_tolerance(hf_check *c)
     c->tolerance_threads = threads;
     c->tolerance_s =
         t->begin_s + hf_check_together_s(t->sample_s, p->settings.tolerance.samples, &c->tolerance_threads);
-    c->at_most_s += c->tolerance_s;
+    c->n_judged = count_judged(c);
+    c->judged_s = c->n_judged * c->tolerance_s;
+    c->at_most_s += c->tolerance_s + c->judged_s;
     if (!t->scale_yields) return;
     double each_s = t->scale_s > 0 ? t->scale_s / t->scale_samples : t->scale_sample_s * t->scale_yields;
     c->yields_s = hf_check_together_s(each_s, t->scale_samples, &threads);

@@ -63,6 +63,8 @@ typedef struct {
     hf_tolerance_trial tolerance;
     int tolerance_threads;        /* number of threads with work for the samples */
     double tolerance_s, yields_s; /* times of all samples, and of the search for tolerance.find_scale */
+    int n_judged;                 /* maximum number of points of a front that are judged by samples */
+    double judged_s;              /* time of the samples of these points */
     hf_solver solver;             /* of the designs of a generation */
     double design_s, search_s;    /* times of a design of the first generation; maximum of the whole search */
     bool is_step_tried;           /* false: step_s follows from counted operations */

@@ -159,41 +159,39 @@ hf_status hf_requirements_stage_take(hf_requirements_stage *q, int state, const 
 
 /* ---- verdicts ---- */
 
+void hf_requirements_stage_clear(const hf_requirements_stage *q, hf_requirement_verdict *verdict)
+{
+    const double none = (double)NAN;
+    for (int i = 0; i < q->required.n; i++)
+        verdict[i] = (hf_requirement_verdict){.row = q->required.row[i],
+                                              .verdict = HF_VERDICT_NONE,
+                                              .value = none,
+                                              .bound = none,
+                                              .margin = none,
+                                              .relative_margin = none,
+                                              .error_bound = none,
+                                              .yield = none,
+                                              .yield_low = none,
+                                              .yield_high = none,
+                                              .worst_sample = -1,
+                                              .worst_margin = none,
+                                              .worst_value = none};
+}
+
 /* Allocates the verdicts of the summary, without any verdict. */
 static hf_status make_verdicts(const hf_requirements_stage *q, hf_summary *s, hf_messages *messages)
 {
-    const hf_required *of = &q->required;
-    const double none = (double)NAN;
-    if (!s->requirement) s->requirement = calloc((size_t)of->n, sizeof *s->requirement);
+    if (!s->requirement) s->requirement = calloc((size_t)q->required.n, sizeof *s->requirement);
     if (!s->requirement) return hf_error(messages, HF_NO_MEMORY, "out of memory for the requirements");
-    for (int i = 0; i < of->n; i++)
-        s->requirement[i] = (hf_requirement_verdict){.row = of->row[i],
-                                                     .verdict = HF_VERDICT_NONE,
-                                                     .value = none,
-                                                     .bound = none,
-                                                     .margin = none,
-                                                     .relative_margin = none,
-                                                     .error_bound = none,
-                                                     .yield = none,
-                                                     .yield_low = none,
-                                                     .yield_high = none,
-                                                     .worst_sample = -1,
-                                                     .worst_margin = none,
-                                                     .worst_value = none};
+    hf_requirements_stage_clear(q, s->requirement);
     return HF_OK;
 }
 
-hf_status hf_requirements_stage_judge_design(const hf_requirements_stage *q, hf_judgement *to)
+void hf_requirements_stage_judge_design(const hf_requirements_stage *q, hf_requirement_verdict *verdict)
 {
-    hf_requirement_verdict *v = calloc((size_t)q->required.n, sizeof *v);
-    if (!v) return HF_NO_MEMORY;
-    for (int i = 0; i < q->required.n; i++) {
-        v[i] = (hf_requirement_verdict){.row = q->required.row[i], .verdict = HF_VERDICT_NONE};
-        if (isnan(v[i].row.share)) hf_required_judge_nominal(&q->required, i, q->value, q->item, q->error, &v[i]);
-    }
-    *to = hf_requirements_judge(q->required.n, v);
-    free(v);
-    return HF_OK;
+    for (int i = 0; i < q->required.n; i++)
+        if (isnan(verdict[i].row.share))
+            hf_required_judge_nominal(&q->required, i, q->value, q->item, q->error, &verdict[i]);
 }
 
 hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *q, const hf_montecarlo *t,
@@ -303,11 +301,9 @@ hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
     const hf_stage_summary *result = &s->stage[stage == HF_N_STAGE ? HF_STAGE_FORM : stage];
     HF_TRY(hf_requirements_stage_take(q, 0, &r->problem.model, r->shape, &result->result, &result->surface, messages));
     if (of->n_share == 0) HF_TRY(make_verdicts(q, s, messages));
-    for (int i = 0; i < of->n; i++) {
-        hf_requirement_verdict *v = &s->requirement[i];
-        if (isnan(v->row.share)) hf_required_judge_nominal(of, i, q->value, q->item, q->error, v);
-        doubt_bounds(v, i, messages);
-    }
+    hf_requirements_stage_judge_design(q, s->requirement);
+    for (int i = 0; i < of->n; i++)
+        doubt_bounds(&s->requirement[i], i, messages);
     s->n_requirement = of->n;
     return HF_OK;
 }

@@ -40,8 +40,12 @@ hf_status hf_requirements_stage_take(hf_requirements_stage *stage, int state, co
 /* Forgets what was measured, before another design is. */
 void hf_requirements_stage_forget(hf_requirements_stage *stage);
 
-/* Judges the design measured last by the rows without a share. Returns HF_OK or HF_NO_MEMORY. */
-hf_status hf_requirements_stage_judge_design(const hf_requirements_stage *stage, hf_judgement *judgement);
+/* Sets verdict [n] to no verdict. */
+void hf_requirements_stage_clear(const hf_requirements_stage *stage, hf_requirement_verdict *verdict);
+
+/* Gives the verdicts on the rows without a share for the design measured last. verdict [n]: other rows are not
+ * changed. */
+void hf_requirements_stage_judge_design(const hf_requirements_stage *stage, hf_requirement_verdict *verdict);
 
 /* Gives the verdicts on the rows with a share. Returns the status of hf_statistics_judge. */
 hf_status hf_requirements_stage_judge_samples(const hf_requirements_stage *stage, const hf_montecarlo *montecarlo,

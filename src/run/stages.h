@@ -86,6 +86,17 @@ hf_run_stage hf_stage_samples;
 /* Gives the verdicts on the rows of `requirements`. */
 hf_run_stage hf_stage_verdicts;
 
+/* Gives the verdicts on the rows of `requirements` with a share for one of several designs, from as many samples as the
+ * result has. They are not kept. verdict [n]: other rows are not changed. Returns HF_OK; HF_NO_MEMORY, HF_INTERRUPTED
+ * or HF_IO, with a message; another status if the design has no as-built net. */
+typedef struct {
+    const hf_workspace *shape; /* of the design */
+    int i, n;                  /* number of this design and of all, for the progress */
+    double begin_s;            /* time of the first one, for the progress */
+} hf_tolerance_design;
+hf_status hf_tolerance_stage_judge(const hf_run *run, const hf_tolerance_design *design,
+                                   hf_requirement_verdict *verdict, hf_messages *messages);
+
 /* Measures the shape in the workspace as that of `stage`: the tensions of its sets, the limits that a design reaches
  * and, for a case with a section `surface`, the surface and its far field. Returns HF_OK; HF_NO_MEMORY; HF_INTERRUPTED
  * without the far field; or an error of the store. */

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "run/problem_parts.h"
+#include "run/tolerance_stage.h"
 #include "search/front_refine.h"
 #include "search/pareto.h"
 #include "solve/certificate.h"
@@ -59,46 +60,81 @@ static void explain_no_front(const hf_problem *p, hf_status status, int end, cha
 
 /* ---- requirements ---- */
 
-/* Gives the verdicts of one point on the rows without a share. */
-static hf_status judge_point(hf_run *r, hf_requirements_stage *q, const double *design, hf_front_point *point,
-                             hf_messages *messages)
+/* The points of a front while they are judged. */
+typedef struct {
+    hf_run *run;
+    hf_requirements_stage stage;
+    hf_requirement_verdict *verdict; /* [stage.required.n] of one point */
+    double begin_s;
+} judge;
+
+/* Gives the verdicts of a shape on the rows without a share. A design without an as-built net fails in load cases. */
+static hf_status judge_nominal(judge *q, hf_workspace *w, const hf_form_result *result)
 {
-    hf_problem *p = &r->problem;
+    hf_problem *p = &q->run->problem;
     const hf_model *m = &p->model;
-    hf_form_result result;
     hf_surface_measures measures = {0};
     hf_messages unread = {0};
-    hf_workspace *w = hf_batch_run_one(&p->batch, design, &result);
-    if (!hf_status_has_shape(result.status)) return HF_OK;
-    hf_requirements_stage_forget(q);
-    hf_certify(m, w, &result);
     hf_status status = HF_OK;
-    if (hf_required_needs_surface(&q->required, false, 0))
+    hf_requirements_stage_forget(&q->stage);
+    if (hf_required_needs_surface(&q->stage.required, false, 0))
         status = hf_surface_measure(&p->surface, &p->facets, m, w->position_m, w->tension_N, &measures);
-    if (status == HF_OK) status = hf_requirements_stage_take(q, 0, m, w, &result, &measures, &unread);
-    if (status == HF_OK) status = hf_load_case_stage_measure(p, w, q, &unread);
+    if (status == HF_OK) status = hf_requirements_stage_take(&q->stage, 0, m, w, result, &measures, &unread);
+    if (status == HF_OK) status = hf_load_case_stage_measure(p, w, &q->stage, &unread);
     hf_messages_free(&unread);
-    /* a design that cannot be made fails in load cases */
-    if (status != HF_NO_MEMORY) status = hf_requirements_stage_judge_design(q, &point->judgement);
-    return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the requirements");
+    hf_requirements_stage_judge_design(&q->stage, q->verdict);
+    return status == HF_NO_MEMORY ? status : HF_OK;
 }
 
-/* Gives the verdicts of all points on the rows of `requirements` without a share. Rows about samples cost as much as a
- * whole run for each point, so only the point that becomes a result has their verdicts. */
-static hf_status judge_front(hf_run *r, hf_front *front, hf_messages *messages)
+/* Gives the verdicts of a shape on the rows with a share. A design without an as-built net fails. */
+static hf_status judge_samples(judge *q, const hf_workspace *w, int i)
 {
-    hf_requirements_stage q;
-    bool has_any = r->requirements.required.nominal != 0;
+    const hf_required *of = &q->stage.required;
+    const hf_tolerance_design design = {w, i, q->run->front.n_point, q->begin_s};
+    hf_messages unread = {0};
     hf_status status = HF_OK;
-    if (!has_any) return HF_OK;
-    status = hf_requirements_stage_open(&r->problem, &q, messages);
-    for (int i = 0; i < front->n_point && status == HF_OK; i++) {
-        if (hf_run_must_stop(r)) status = HF_INTERRUPTED;
-        if (status == HF_OK && front->point[i].status == HF_OK)
-            status =
-                judge_point(r, &q, front->design + (size_t)i * (size_t)front->n_variable, &front->point[i], messages);
+    if (of->n_share > 0) status = hf_tolerance_stage_judge(q->run, &design, q->verdict, &unread);
+    hf_messages_free(&unread);
+    if (status == HF_NO_MEMORY || status == HF_INTERRUPTED || status == HF_IO) return status;
+    for (int k = 0; k < of->n_share && status != HF_OK; k++) {
+        q->verdict[of->share[k]].verdict = HF_VERDICT_FAIL;
+        q->verdict[of->share[k]].relative_margin = -INFINITY;
     }
-    hf_requirements_stage_free(&q);
+    return HF_OK;
+}
+
+static hf_status judge_point(judge *q, int i)
+{
+    hf_run *r = q->run;
+    hf_front *front = &r->front;
+    hf_form_result result;
+    hf_workspace *w =
+        hf_batch_run_one(&r->problem.batch, front->design + (size_t)i * (size_t)front->n_variable, &result);
+    if (!hf_status_has_shape(result.status)) return HF_OK;
+    hf_certify(&r->problem.model, w, &result);
+    hf_requirements_stage_clear(&q->stage, q->verdict);
+    HF_TRY(judge_nominal(q, w, &result));
+    HF_TRY(judge_samples(q, w, i));
+    front->point[i].judgement = hf_requirements_judge(q->stage.required.n, q->verdict);
+    return HF_OK;
+}
+
+/* Gives the verdicts of all points on the rows of `requirements`. */
+static hf_status judge_front(hf_run *r, hf_messages *messages)
+{
+    judge q = {.run = r, .begin_s = hf_clock_s()};
+    int n = r->requirements.required.n;
+    if (n == 0 || hf_tolerance_stage_is_task(r->request)) return HF_OK;
+    hf_status status = hf_requirements_stage_open(&r->problem, &q.stage, messages);
+    if (status == HF_OK && !(q.verdict = calloc((size_t)n, sizeof *q.verdict))) status = HF_NO_MEMORY;
+    for (int i = 0; i < r->front.n_point && status == HF_OK; i++) {
+        if (hf_run_must_stop(r)) status = HF_INTERRUPTED;
+        if (status == HF_OK && r->front.point[i].status == HF_OK) status = judge_point(&q, i);
+    }
+    if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the requirements");
+    if (status == HF_IO) hf_error(messages, status, "the samples of a point of the front cannot be kept");
+    free(q.verdict);
+    hf_requirements_stage_free(&q.stage);
     return status;
 }
 
@@ -112,7 +148,7 @@ static hf_status keep_front(hf_run *r, double wall_s, hf_summary *s, hf_messages
     memcpy(front->initial, s->stage[HF_STAGE_FORM].result.objective, sizeof front->initial);
     if (!s->front) s->front = calloc(1, sizeof *s->front);
     if (!s->front) return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
-    HF_TRY(judge_front(r, front, messages));
+    HF_TRY(judge_front(r, messages));
     hf_front_tabulate(front, s->front);
     s->front->wall_s = wall_s;
     if (s->front->n_failed > 0) {

@@ -212,7 +212,8 @@ typedef struct {
     hf_montecarlo montecarlo;
     hf_gain_beam beam; /* of the net at the target positions, used for all shapes */
     hf_samples samples;
-    void *rest_block; /* displacements of the attachments in load cases */
+    void *rest_block;       /* displacements of the attachments in load cases */
+    int i_design, n_design; /* design of several, whose samples are reported as one series */
     double begin_s;
 } job;
 
@@ -234,11 +235,11 @@ static void report(const job *j, hf_run_progress now)
 
 static void report_samples(const job *j, long n_new, bool is_last)
 {
-    long done = (long)j->samples.n_have * j->samples.n_chunk;
-    report(j, (hf_run_progress){.samples = done < j->samples.n ? done : j->samples.n,
-                                .samples_all = j->samples.n,
-                                .evaluations = n_new,
-                                .is_last = is_last,
+    long n = j->samples.n, done = (long)j->samples.n_have * j->samples.n_chunk, before = j->i_design * n;
+    report(j, (hf_run_progress){.samples = before + (done < n ? done : n),
+                                .samples_all = n * j->n_design,
+                                .evaluations = before + n_new,
+                                .is_last = is_last && j->i_design == j->n_design - 1,
                                 .elapsed_s = hf_clock_s() - j->begin_s});
 }
 
@@ -494,15 +495,21 @@ hf_status hf_tolerance_stage_try(const hf_problem *p, const hf_workspace *shape,
 
 /* ---- the stage ---- */
 
-static hf_status work_off(job *j, hf_run *r, hf_summary *summary, hf_messages *messages)
+static hf_status make_net(job *j, hf_messages *messages)
 {
     const hf_problem *p = j->problem;
     char place[HF_LOCATION_SIZE];
     HF_TRY(hf_built_make(place_section(&p->settings, place), &p->scene, &p->model, &p->settings.form, j->shape,
                          &j->built, messages));
     j->built.stop = j->request->control.stop_requested;
+    return HF_OK;
+}
+
+static hf_status work_off(job *j, hf_run *r, hf_summary *summary, hf_messages *messages)
+{
+    HF_TRY(make_net(j, messages));
     /* before the first sample: the first order takes a while in large nets */
-    report(j, (hf_run_progress){.samples_all = p->settings.tolerance.samples});
+    report(j, (hf_run_progress){.samples_all = j->problem->settings.tolerance.samples});
     HF_TRY(open_montecarlo(j, messages));
     aim_beam(j, messages);
     HF_TRY(open_samples(j, r->output, messages));
@@ -517,8 +524,36 @@ hf_status hf_stage_samples(hf_run *r, hf_summary *summary, hf_messages *messages
              .problem = &r->problem,
              .requirements = &r->requirements,
              .shape = r->shape,
+             .n_design = 1,
              .begin_s = hf_clock_s()};
     hf_status status = work_off(&j, r, summary, messages);
+    job_free(&j);
+    return status;
+}
+
+hf_status hf_tolerance_stage_judge(const hf_run *r, const hf_tolerance_design *design, hf_requirement_verdict *verdict,
+                                   hf_messages *messages)
+{
+    hf_run_request request = *r->request;
+    job j = {.request = &request,
+             .problem = &r->problem,
+             .requirements = &r->requirements,
+             .shape = design->shape,
+             .i_design = design->i,
+             .n_design = design->n,
+             .begin_s = design->begin_s};
+    request.part = (hf_run_part){.of_sweep = true}; /* no journal, no tasks */
+    hf_status status = make_net(&j, messages);
+    if (status == HF_OK) status = open_montecarlo(&j, messages);
+    if (status == HF_OK) {
+        j.montecarlo.skips_surface = !hf_required_needs_surface(j.montecarlo.required, true, 0);
+        status = open_samples(&j, r->output, messages);
+    }
+    if (status == HF_OK) status = find_samples(&j, messages);
+    if (status == HF_OK) {
+        const hf_statistics_rows rows = {j.samples.n, hf_samples_read, &j.samples, j.montecarlo.n_value};
+        status = hf_statistics_judge(&j.montecarlo, &rows, verdict);
+    }
     job_free(&j);
     return status;
 }

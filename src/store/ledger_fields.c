@@ -132,7 +132,7 @@ static int print_load_cases(const hf_summary *s, char *text, size_t size)
 static int print_verdicts(const hf_summary *s, char *text, size_t size)
 {
     if (s->n_requirement == 0) return 0;
-    hf_judgement of = hf_requirements_judge(s->n_requirement, s->requirement);
+    hf_judgement of = hf_summary_judge(s);
     size_t used = (size_t)snprintf(text, size, "n_failed=%d n_undecided=%d relative_margin_min=%.17g", of.n_failed,
                                    of.n_undecided, of.relative_margin_min);
     for (int i = 0; i < s->n_requirement && used < size; i++) {

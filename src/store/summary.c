@@ -48,6 +48,12 @@ hf_stage hf_store_result_stage(const hf_summary *s)
     return hf_summary_has_shape(s, HF_STAGE_SEARCH) ? HF_STAGE_SEARCH : HF_STAGE_FORM;
 }
 
+hf_judgement hf_summary_judge(const hf_summary *s)
+{
+    bool is_of_point = s->front && hf_front_is_judged(s->front) && hf_front_suggested(s->front) > 0;
+    return is_of_point ? s->front->first.judgement : hf_requirements_judge(s->n_requirement, s->requirement);
+}
+
 hf_status hf_summary_status(const hf_summary *s)
 {
     return s->finished ? s->status : s->stage[HF_STAGE_FORM].result.status;

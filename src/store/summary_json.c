@@ -265,7 +265,7 @@ static void write_figures(const hf_tolerance_figures *f, const char *measure, hf
 static void write_verdicts(const hf_summary *s, hf_json *j)
 {
     if (s->n_requirement == 0) return;
-    hf_judgement all = hf_requirements_judge(s->n_requirement, s->requirement);
+    hf_judgement all = hf_summary_judge(s);
     hf_json_line(j, " ");
     hf_json_text(j, "verdict", hf_verdict_word[hf_judgement_verdict(&all)]);
     hf_json_open(j, "requirements", '[');

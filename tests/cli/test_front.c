@@ -56,7 +56,8 @@ START_TEST(points_of_a_front_have_verdicts)
 {
     const char *file = temp("f.h5"), *point = temp("p.h5"), *json;
     HIFDM(0, "run", FRONT, ROWS, "-o", file, "--verbose");
-    OUT("verdict: fail; 2 of 3 requirements pass, 1 fails; of the net after form-finding\n");
+    OUT("verdict: pass; 4 of 7 points of the front pass, 3 fail; point ");
+    OUT("  net after form-finding: fail; 2 of 3 requirements pass, 1 fails\n");
     OUT("; fails 1 of 3; not converged\n");
     OUT("; passes\n");
     OUT("; requirements: 4 pass, 3 fail, 0 undecided; ");
@@ -89,22 +90,51 @@ START_TEST(points_of_a_front_have_verdicts)
 }
 END_TEST
 
-/* NSGA-II judges its points, too; rows about samples are left to the run of a point. */
+/* NSGA-II judges its points, too. */
 START_TEST(generations_have_verdicts)
 {
     const char *file = temp("f.h5");
     HIFDM(0, "run", keep(source_path("configs/chen2022.yaml")), "--set",
           "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]", "--set", "optimize.generations=40", "--set",
           "optimize.population=20", "--set", "tolerance.samples=100", "--set", "tolerance.sigma_cut_m=1e-4", "--set",
-          "requirements=[{figure: psi, at_most: 5.5e-3, search: off}, {figure: psi, at_most: 5.6e-3, share: 0.5, "
-          "search: off}]",
-          "-o", file, "--verbose");
-    OUT(", 1 row about samples not judged; ");
+          "requirements=[{figure: psi, at_most: 5.5e-3, search: off}]", "-o", file, "--verbose");
     OUT("  minimum psi, NSGA-II: ");
     ck_assert(!strstr(said.out, "the result, NSGA"));
     EXPECT(file, "--", "(a['front/requirements'][:] == 1).all()",
            "(a['front/requirements_failed'][:] == (a['front/objective'][:, 0] > 5.5e-3)).all()",
            "0 < sum(a['front/requirements_failed'][:]) < 20");
+}
+END_TEST
+
+/* Rows with a share have the verdicts that the samples of runs of these points have. A point that meets the row about
+ * the nominal net fails in its samples. */
+START_TEST(points_of_a_front_are_judged_by_samples)
+{
+#define SHARES                                                                                                         \
+    "--set", "tolerance.samples=120", "--set", "tolerance.sigma_cut_m=2e-4", "--set",                                  \
+        "requirements=[{figure: psi, at_most: 6.6e-3, share: 0.8, search: off}, "                                      \
+        "{figure: psi, at_most: 8.5e-3, search: off}]"
+    const char *file = temp("f.h5"), *point = temp("p.h5");
+    HIFDM(0, "run", FRONT, SHARES, "-o", file, "--strict");
+    OUT("verdict: pass; ");
+    ck_assert(!strstr(said.out, "as built")); /* of the net after form-finding, which is no point */
+    HIFDM(0, "show", file, "--json");
+    EXPECT(file, out_as("s.json"), "--", "(a['front/requirements'][:] == 2).all()", "b['verdict'] == 'pass'",
+           "0 < b['front']['n_pass'] < 7", "b['front']['n_fail'] > 0",
+           "sum(a['front/requirements_failed'][:] > 0) > sum(a['front/objective'][:, 0] > 8.5e-3)",
+           "b['front']['points'][b['front']['first'] - 1]['verdict'] == 'pass'");
+    for (int i = 1; i <= 7; i++) {
+        HIFDM(0, "run", FRONT, SHARES, "--point", formatted("%s:%d", file, i), "-o", point, "--restart");
+        EXPECT(file, point, file_with("i", formatted("%d", i - 1)), "--",
+               "sum(b['requirements/verdict'][:] == b'fail') == a['front/requirements_failed'][int(c)]",
+               "sum(b['requirements/verdict'][:] == b'undecided') == a['front/requirements_undecided'][int(c)]",
+               "near(np.nanmin(b['requirements/relative_margin'][:]), a['front/relative_margin_min'][int(c)], 1e-6)");
+    }
+    HIFDM(0, "check", FRONT, SHARES);
+    OUT("\n                verdicts of up to 7 points of the front by samples: about ");
+    HIFDM(6, "run", FRONT, SHARES, "-o", file, "--restart", "--strict", "--set", "requirements.0.at_most=1e-3");
+    ERR("every point of the front fails a requirement; point ");
+    OUT("verdict: fail; 0 of 7 points of the front pass, 7 fail; point ");
 }
 END_TEST
 
@@ -441,6 +471,7 @@ Suite *suite_cli_front(void)
     tcase_add_test(tests, a_front_is_printed_stored_and_told);
     tcase_add_test(tests, points_of_a_front_have_verdicts);
     tcase_add_test(tests, generations_have_verdicts);
+    tcase_add_test(tests, points_of_a_front_are_judged_by_samples);
     tcase_add_test(tests, a_front_says_how_far_it_is);
     tcase_add_test(tests, a_slope_says_of_what_it_is);
     tcase_add_test(tests, the_least_beside_an_objective_that_is_met);

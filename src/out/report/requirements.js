@@ -43,6 +43,10 @@ function judged(of = summary, required = data.required) {
     .sort((a, b) => VERDICT_RANK[a.verdict] - VERDICT_RANK[b.verdict] || tightness(a) - tightness(b) || 0);
 }
 
+function verdictOfRows(rows) {
+  return ["fail", "undecided", "pass"].find((verdict) => rows.some((row) => row.verdict === verdict));
+}
+
 function verdictText(rows) {
   const count = (verdict) => rows.filter((row) => row.verdict === verdict).length,
     more = [
@@ -180,9 +184,12 @@ function writeRequirements() {
     const rows = judged(of, required);
     if (!rows.length) return;
     const caption = name ? `Requirements of ${name}` : "Requirements";
+    // the points of a front have their own table
+    const whose = of.front ? "the net after form-finding" : name,
+      counted = of.front ? verdictOfRows(rows) : of.verdict;
     section(
       id,
-      `Verdict${name ? ` on ${name}` : ""}: ${of.verdict}`,
+      `Verdict${whose ? ` on ${whose}` : ""}: ${counted}`,
       el("p", {}, verdictText(rows)),
       verdictTable(rows, caption),
     );
