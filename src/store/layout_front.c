@@ -28,7 +28,7 @@ static const hf_layout_field point_field[N_FIELD] = {
 
 /* Data sets of the verdicts, in files of runs whose rows of `requirements` were judged. */
 static const hf_layout_field judgement_field[] = {
-    POINT("requirements", judgement.n_required, INT, "number of rows without a share, which were judged")
+    POINT("requirements", judgement.n_required, INT, "number of rows that were judged")
         POINT("requirements_failed", judgement.n_failed, INT, "number of them that fail")
             POINT("requirements_undecided", judgement.n_undecided, INT, "number of them that are undecided")
                 POINT("relative_margin_min", judgement.relative_margin_min, REAL,

@@ -224,7 +224,7 @@ async function checkMarginLine(tab, study, at) {
   assert.equal(await tab.locator("#sweep .chart h3", { hasText: "tension of tie" }).count(), 1);
   const legend = await chart.locator(".legend").innerText(),
     words = { pass: "passes", fail: "fails", undecided: "undecided" };
-  assert.match(legend, /no margin/);
+  assert.match(legend, /margin 0/);
   for (const [verdict, word] of Object.entries(words))
     assert.equal(
       legend.includes(word),

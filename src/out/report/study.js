@@ -251,7 +251,7 @@ function verdictSeries(study, points, figure) {
     size: 9,
     values: points.map((i) => (i !== undefined && study.verdict[i] === verdict ? figure.of(i) : null)),
   }));
-  const zero = { name: "no margin", colour: "--alarm", dash: "6 4", isLevel: true, values: points.map(() => 0) };
+  const zero = { name: "margin 0", colour: "--alarm", dash: "6 4", isLevel: true, values: points.map(() => 0) };
   return [zero, ...marks.filter(({ values }) => values.some((v) => v !== null))];
 }
 
