@@ -34,17 +34,30 @@ static void keep_exit_status(void)
     _exit(hf_status_exit_code(HF_NO_MEMORY));
 }
 
-/* Prints messages with the words "error" and "warning" in colour. */
-static void say_in_colours(const char *lines)
+/* Prints a message at once: a warning about the case comes before hours of computation. On a terminal, it replaces the
+ * line of the progress. */
+static void tell(const char *line)
 {
-    for (const char *line = lines; *line; line += strcspn(line, "\n") + 1) {
+    static const char clear[] = "\r\033[K";
+    size_t n = strcspn(line, "\n") + 1, word = strcspn(line, ":\n");
+    if (isatty(STDERR_FILENO)) hf_output_write(STDERR_FILENO, clear, sizeof clear - 1);
+    if (hf_output_has_colour(STDERR_FILENO)) {
         const char *colour = !strncmp(line, "error:", 6) ? HF_PRINT_RED : HF_PRINT_YELLOW;
-        size_t n = strcspn(line, "\n") + 1, word = strcspn(line, ":\n");
         hf_output_write(STDERR_FILENO, colour, strlen(colour));
         hf_output_write(STDERR_FILENO, line, word);
         hf_output_write(STDERR_FILENO, HF_PRINT_PLAIN, strlen(HF_PRINT_PLAIN));
-        hf_output_write(STDERR_FILENO, line + word, n - word);
+        line += word;
+        n -= word;
     }
+    hf_output_write(STDERR_FILENO, line, n);
+}
+
+/* Prints the messages so far, and from now on each one at once. */
+static void tell_from_now(hf_messages *messages)
+{
+    for (const char *line = messages->text; line && *line; line += strcspn(line, "\n") + 1)
+        tell(line);
+    messages->tell = tell;
 }
 
 /* Prints the words of these messages, and of a status about the net, that `hifdm explain` can explain. */
@@ -61,13 +74,9 @@ static void say_where_to_read_on(const char *lines, hf_status status)
     if (n) fputc('\n', stderr);
 }
 
-/* Prints the messages. They need memory, too: if it ran out, an error is printed nevertheless. */
+/* Ends the messages. They need memory, too: if it ran out, an error is printed nevertheless. */
 static void say(const hf_messages *messages, hf_status status)
 {
-    if (messages->text && hf_output_has_colour(STDERR_FILENO))
-        say_in_colours(messages->text);
-    else if (messages->text)
-        hf_output_write(STDERR_FILENO, messages->text, strlen(messages->text));
     if (messages->text && isatty(STDERR_FILENO)) say_where_to_read_on(messages->text, status);
     if (hf_status_exit_code(status) == hf_status_exit_code(HF_NO_MEMORY) &&
         (!messages->text || !strstr(messages->text, "error: ")))
@@ -93,13 +102,15 @@ int main(int argc, char **argv)
     int exit_status;
     signal(SIGCHLD, SIG_DFL); /* if a launcher ignores it, the end of a child cannot be read */
     if (status == HF_OK && options.command->reads_results && hf_reader_watch(&options, &exit_status, &messages)) {
+        tell_from_now(&messages);
         say(&messages, status);
         hf_messages_free(&messages);
         hf_options_free(&options);
         return exit_status;
     }
     if (uses_threads) hf_batch_wait_quietly(argv); /* may start the program again, so it comes before the libraries */
-    signal(SIGXFSZ, SIG_IGN);                      /* writing beyond the limit on file size then fails with an error */
+    tell_from_now(&messages);
+    signal(SIGXFSZ, SIG_IGN); /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
     atexit(keep_exit_status);
     if (!hf_store_quiet() && status == HF_OK) status = HF_NO_MEMORY;

@@ -74,7 +74,7 @@ static void append(hf_messages *m, const char *prefix, const char *format, va_li
     va_end(count_args);
     size_t n_prefix = strlen(prefix);
     if (n_body < 0 || !reserve(m, n_prefix + (size_t)n_body + 1)) return;
-    size_t begin = m->length + n_prefix;
+    size_t start = m->length, begin = start + n_prefix;
     vsnprintf(m->text + begin, (size_t)n_body + 1, format, args);
     size_t n_shown = hf_text_escape(m->text + begin, NULL, 0);
     if (n_shown != (size_t)n_body) { /* the body moves behind the room for its escaped form */
@@ -89,6 +89,7 @@ static void append(hf_messages *m, const char *prefix, const char *format, va_li
     m->length = begin + n_shown;
     m->text[m->length++] = '\n';
     m->text[m->length] = '\0';
+    if (m->tell) m->tell(m->text + start);
 }
 
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...)

@@ -69,8 +69,10 @@ static void print_yield(const hf_tolerance_summary *t, FILE *f)
     const char *bound = t->scale_bound > 0 ? "at least " : t->scale_bound < 0 ? "less than " : "";
     const char *lead = isfinite(t->yield) ? "; " : "                ";
     if (isfinite(t->yield))
-        fprintf(f, "                yield %.2f %% (95 %% interval %.2f to %.2f %%): samples that meet all requirements",
-                100 * t->yield, 100 * t->yield_low, 100 * t->yield_high);
+        fprintf(
+            f,
+            "                yield %.2f %% (95 %% interval %.2f to %.2f %%): samples that meet all rows with a share",
+            100 * t->yield, 100 * t->yield_low, 100 * t->yield_high);
     if (t->sigma_scale == 0)
         fprintf(f, "%sno errors are small enough for the required shares, because the net without errors fails", lead);
     else if (t->sigma_scale < 1)

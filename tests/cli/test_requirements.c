@@ -754,6 +754,7 @@ END_TEST
 /* Below the verdicts stand at most 12 lines, with everything that a run can compute, and with a front. */
 START_TEST(a_summary_below_verdicts_is_short)
 {
+    enum { FRONT = 1 };
     static const char *const search[] = {
         "  objective: [{figure: psi}]\n  population: 6\n  generations: 2\n  refine: true\n",
         "  method: lm\n  front: [{figure: psi}, {figure: pull}]\n",
@@ -772,10 +773,15 @@ START_TEST(a_summary_below_verdicts_is_short)
                   100, search[_i]));
     HIFDM(0, "run", c, "-o", temp("a.h5"), "--set", "tolerance.find_scale=true");
     OUT("verdict: ");
-    OUT("\n  load cases    worst of 2: psi ");
-    OUT("samples that meet all requirements; the required shares hold up to ");
+    if (_i == FRONT) { /* its points have verdicts, and load cases and samples are those of no point */
+        OUT(" of 21 points of the front pass, ");
+        ck_assert(!strstr(said.out, "worst of 2: psi") && !strstr(said.out, "as built"));
+    } else {
+        OUT("\n  load cases    worst of 2: psi ");
+        OUT("samples that meet all rows with a share; the required shares hold up to ");
+    }
     const char *below = said.out;
-    for (int row = 0; row < 3; row++) /* the verdict and its two rows */
+    for (int row = 0; row < (_i == FRONT ? 1 : 3); row++) /* the verdict and its two rows */
         below = strchr(below, '\n') + 1;
     ck_assert_msg(count_of(below, "\n") <= 12, "%s", below);
     HIFDM(0, "show", temp("a.h5"), "--verbose");
@@ -870,6 +876,17 @@ START_TEST(facets_too_large_for_a_bound_are_reported)
 }
 END_TEST
 
+/* A doubt about the case is printed before the run computes, not after hours. */
+START_TEST(warnings_come_at_once)
+{
+    const char *c = file_with("c.yaml", BUILT_SCENE "optimize: {method: lm, variables: [{set: inner, vary: "
+                                                    "force_density, bounds: [1e3, 1e6], link: set}]}\n");
+    SHELL(0, "exec \"$0\" run \"$1\" -o \"$2\" 2>&1", c, temp("a.h5"));
+    const char *warning = strstr(said.out, "warning: "), *end = strstr(said.out, "  results  ");
+    ck_assert_msg(warning && end && warning < end, "%s", said.out);
+}
+END_TEST
+
 START_TEST(bounds_that_exclude_the_start_are_reported)
 {
     const char *text = BUILT_SCENE "optimize: {method: lm, variables: [{set: inner, vary: force_density, bounds: "
@@ -914,6 +931,7 @@ Suite *suite_cli_requirements(void)
     tcase_add_loop_test(tests, a_slack_start_is_scaled_into_the_requirements, 0, 2);
     tcase_add_loop_test(tests, a_failed_search_leaves_verdicts, 0, 2);
     tcase_add_test(tests, facets_too_large_for_a_bound_are_reported);
+    tcase_add_test(tests, warnings_come_at_once);
     tcase_add_test(tests, bounds_that_exclude_the_start_are_reported);
     return suite;
 }

@@ -73,7 +73,7 @@ function figureWords({ key, objective: objectiveWords }) {
   if (key === "psi_95_m") return ["95th percentile of ψ of the samples", "ψ", 0, "ψ of 95 %"];
   if (key === MARGIN) return ["Smallest relative margin of the requirements", "margin", -1, "Smallest margin"];
   if (key === "merit") return ["Merit of all objectives with their weights", "merit", 2, "Merit"];
-  if (key === "yield") return ["Yield: samples that meet all requirements", "yield", 2, "Yield"];
+  if (key === "yield") return ["Yield: samples that meet all rows with a share", "yield", 2, "Yield"];
   if (rest === "half_path_rms_m")
     return [`Half-path error of the ${of}${after}`, "RMS", fit ? 4 : 3, `RMS of ${of}${fitted}`];
   if (rest === "gain_loss_1dB_Hz")
