@@ -184,6 +184,27 @@ static double beyond(constraints_room *r, int i_row, bool is_high, const hf_work
     return isfinite(distance) ? distance : (double)INFINITY;
 }
 
+/* Returns the unit of a distance from a bound. */
+static double unit_of(const hf_required_column *column, double bound, const hf_model *m)
+{
+    if (column->figure == HF_REQUIRED_SLACK) return HF_SLACK_RATIO * m->reference_N;
+    if (column->figure == HF_REQUIRED_GAIN) return 1; /* a ratio in dB, whose zero means nothing */
+    if (bound != 0) return fabs(bound);
+    return column->figure == HF_REQUIRED_TENSION || column->figure == HF_REQUIRED_PULL ? m->reference_N : 1;
+}
+
+/* Returns the factor of distances from one bound of constraint k. A constraint about samples is the distance from the
+ * nearer of two bounds; with bounds other than 0 it is relative to each, as margins are, in its own unit. */
+static double scale_of(const hf_built_constraints *c, int k, bool is_high)
+{
+    const hf_required *q = c->required;
+    const hf_requirement_settings *row = &q->row[c->row[k]];
+    bool has_two = fabs(row->at_least) > 0 && fabs(row->at_most) > 0; /* NaN: no bound */
+    if (!is_over_samples(c, k) || !has_two) return 1;
+    int column = is_high ? q->high[c->row[k]] : q->low[c->row[k]];
+    return column < 0 ? 1 : c->unit[k] / unit_of(&q->column[column], is_high ? row->at_most : row->at_least, c->model);
+}
+
 /* Returns the distance of constraint k for a net, over both bounds of its row if it is about samples. */
 static double distance_of(constraints_room *r, int k, const hf_workspace *w, bool *is_high, double *item)
 {
@@ -192,7 +213,7 @@ static double distance_of(constraints_room *r, int k, const hf_workspace *w, boo
     if (!w) return HF_BUILT_NO_VALUE * c->unit[k];
     for (int high = 0; high < 2; high++) {
         if (!is_over_samples(c, k) && c->is_high[k] != high) continue;
-        double distance = beyond(r, c->row[k], high, w, &at);
+        double distance = scale_of(c, k, high) * beyond(r, c->row[k], high, w, &at);
         if (!(distance > most)) continue;
         most = distance;
         *is_high = high;
@@ -459,6 +480,7 @@ static int list_terms(constraints_room *r, int state, int i_sample, const hf_wor
         if (weight == 0) continue;
         if (i_sample >= 0 && r->worst_state[at] != state) continue;
         distance_of(r, k, w, &is_high, &item);
+        weight *= scale_of(c, k, is_high);
         bool rises = is_high && q->row[c->row[k]].figure != HF_REQUIRED_SLACK;
         int column = is_high ? q->high[c->row[k]] : q->low[c->row[k]];
         if (!linearise_column(r, column, w)) continue;
@@ -588,15 +610,6 @@ static hf_status open_room(const hf_constraints *as, void **room)
     *kept = r;
     HF_TRY(make_clouds(kept));
     return c->nets ? c->nets->as.open(&c->nets->as, &kept->nets) : HF_OK;
-}
-
-/* Returns the unit of a distance from a bound. */
-static double unit_of(const hf_required_column *column, double bound, const hf_model *m)
-{
-    if (column->figure == HF_REQUIRED_SLACK) return HF_SLACK_RATIO * m->reference_N;
-    if (column->figure == HF_REQUIRED_GAIN) return 1; /* a ratio in dB, whose zero means nothing */
-    if (bound != 0) return fabs(bound);
-    return column->figure == HF_REQUIRED_TENSION || column->figure == HF_REQUIRED_PULL ? m->reference_N : 1;
 }
 
 /* Adds a constraint. It is only counted while there is no memory. */

@@ -152,16 +152,20 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
 {
     const hf_constraints *c = p->objectives.constraints;
     char name[256];
-    int worst = -1, n_other = -1;
-    char others[48] = "";
+    int worst = -1, n_missed = 0;
+    bool is_missed[HF_REQUIREMENT_ROWS_MAX] = {false};
+    char others[48] = "", of_samples[32] = "";
     *text = '\0';
     for (int k = 0; c && k < c->n; k++) {
         double beyond = p->point.constraint[k] / c->unit[k];
-        n_other += beyond > 0;
+        int row = p->nets->constraints.row[k];
+        n_missed += beyond > 0 && !is_missed[row];
+        is_missed[row] |= beyond > 0;
         if (beyond > 0 && (worst < 0 || beyond > p->point.constraint[worst] / c->unit[worst])) worst = k;
     }
     if (worst < 0) return text;
-    if (n_other > 0) snprintf(others, sizeof others, ", and %d more are missed", n_other);
+    if (n_missed > 1)
+        snprintf(others, sizeof others, ", and %d more row%s missed", n_missed - 1, n_missed > 2 ? "s are" : " is");
     int row = p->nets->constraints.row[worst];
     const hf_requirement_settings *r = &p->settings.requirement[row];
     /* A count is judged by tensions. */
@@ -171,10 +175,15 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
                  hf_requirement_name(r, name, sizeof name), others);
         return text;
     }
-    bool is_length = !strcmp(unit, "m");
-    snprintf(text, size, ": bound of requirements.%d (%.160s) is missed by %.3g%s%s%s", row,
-             hf_requirement_name(r, name, sizeof name), p->point.constraint[worst] * (is_length ? 1e3 : 1),
-             *unit ? " " : "", is_length ? "mm" : unit, others);
+    double amount = p->point.constraint[worst];
+    bool is_length = !strcmp(unit, "m"), is_relative = r->at_least != 0 && r->at_most != 0 && !isnan(r->share) &&
+                                                       !isnan(r->at_least) && !isnan(r->at_most);
+    if (!isnan(r->share)) strcpy(of_samples, " in samples of the search");
+    if (is_relative) amount *= 100 / c->unit[worst];
+    if (is_relative || is_length) unit = is_relative ? "%" : "mm";
+    snprintf(text, size, ": bound of requirements.%d (%.160s) is missed by %.3g%s%s%s%s", row,
+             hf_requirement_name(r, name, sizeof name), amount * (is_length && !is_relative ? 1e3 : 1),
+             *unit ? " " : "", unit, of_samples, others);
     return text;
 }
 

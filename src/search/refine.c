@@ -299,16 +299,19 @@ static bool scale_start(hf_refine_problem *p, double factor)
     return changes;
 }
 
-/* Returns how far the shape in the workspace is outside the limits or, below zero, its smallest relative margin. */
+/* Returns the largest relative distance of the shape in the workspace from a requirement, which is minus the smallest
+ * margin. Limits that it breaks count by their sum. */
 static double distance_outside(hf_refine_problem *p, bool *is_outside)
 {
     const hf_constraints *c = p->v.objectives->constraints;
-    double margin = -INFINITY;
+    double most = -INFINITY, of_limits = hf_watch_violation(&p->watch, p->w);
     *is_outside = !hf_watch_keeps(&p->watch, p->w);
-    if (*is_outside) return hf_watch_violation(&p->watch, p->w);
-    for (int k = 0; k < c->n; k++)
-        margin = fmax(margin, p->watch.constraint[k] / c->unit[k]);
-    return margin;
+    for (int k = 0; k < c->n; k++) {
+        double distance = p->watch.constraint[k] / c->unit[k];
+        most = fmax(most, distance);
+        of_limits -= fmax(0, distance);
+    }
+    return *is_outside ? fmax(most, of_limits) : most;
 }
 
 /* Returns true if the merit is rounding of positions: a step would only follow the rounding. */
@@ -328,10 +331,10 @@ static bool is_scaled_first(const hf_refine_problem *p, int max_iterations, cons
  * Returns HF_OK or the status of the failure. */
 static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
 {
-    double nearest = p->violation;
-    bool is_outside = true;
+    bool is_outside;
+    double start = distance_outside(p, &is_outside), nearest = start;
     r->iterations++;
-    for (int sign = 1; sign >= -1 && nearest == p->violation; sign -= 2)
+    for (int sign = 1; sign >= -1 && nearest == start; sign -= 2)
         for (int i = 1; i <= SCALES_MAX && scale_start(p, pow(SCALE_BY, sign * i)); i++) {
             hf_status status = hf_refine_evaluate(p, p->trial);
             if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
@@ -342,8 +345,8 @@ static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
             p->is_outside = is_outside;
             hf_refine_keep(p);
         }
-    p->violation = fmax(0, nearest);
     HF_TRY(hf_refine_evaluate(p, p->at));
+    p->violation = hf_watch_violation(&p->watch, p->w);
     r->merit = hf_refine_merit(p, &p->result);
     return is_zero(p, r) ? HF_OK : hf_refine_linearise(p);
 }
