@@ -30,13 +30,29 @@ static void print_mm(FILE *file, double value_m)
         fputc('-', file);
 }
 
+/* Returns whether a measure is a gain loss by Ruze's formula, without the weights of the illumination. */
+static bool is_ruze(int measure)
+{
+    return measure == HF_TOLERANCE_GAIN_LOSS || measure == HF_TOLERANCE_FIT_GAIN_LOSS ||
+           measure == HF_TOLERANCE_FACET_GAIN_LOSS || measure == HF_TOLERANCE_FACET_FIT_GAIN_LOSS;
+}
+
+static bool has_optics(const hf_summary *s)
+{
+    const hf_surface_measures *m = &s->stage[HF_STAGE_FORM].surface;
+    bool has = false;
+    for (int k = 0; m->is_measured && k < s->surface.frequencies_Hz.n; k++)
+        has |= isfinite(m->refocused_gain_loss_dB[k]) != 0;
+    return has;
+}
+
 static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file)
 {
     const char *unit;
     double times = hf_print_scale(hf_tolerance_measure_unit[measure], &unit);
     if (!f->is_measured) return;
     const char *holds = hf_tolerance_more_is_better((hf_tolerance_measure)measure) ? "at least" : "at most";
-    fprintf(file, "                %s: mean ", hf_tolerance_measure_word[measure]);
+    fprintf(file, "                %s%s: mean ", hf_tolerance_measure_word[measure], is_ruze(measure) ? " (Ruze)" : "");
     print_numbers(file, 1, &f->mean, times);
     fprintf(file, "; 50/95/99 %% of the samples have %s ", holds);
     print_numbers(file, HF_TOLERANCE_QUANTILES, f->value, times);
@@ -114,7 +130,7 @@ void hf_print_tolerance(const hf_summary *s, hf_print_amount amount, FILE *f)
                 t->n_with_slack_in_any, t->n_failed_in_any);
     fprintf(f, "%s\n", hf_print_duration(t->tolerance_wall_s).text);
     for (int k = 0; amount == HF_PRINT_VERBOSE && k < HF_TOLERANCE_SLACK; k++)
-        print_measure(&t->figure[k], k, f);
+        if (!is_ruze(k) || !has_optics(s)) print_measure(&t->figure[k], k, f);
     if (amount == HF_PRINT_VERBOSE) print_first_order(t, f);
     print_yield(t, f);
     if (amount != HF_PRINT_SHORT) print_shares(t, f);

@@ -16,8 +16,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MISSED 1e-5 /* amount over the reference tension from which a bound counts as missed */
-#define NAMED_MAX 3 /* maximum number of bounds in a message about a contradiction */
+#define MISSED 1e-5         /* amount over the reference tension from which a bound counts as missed */
+#define SHARE_OF_DESIGN 0.5 /* a larger share of the samples requires that about the design meets the bound, too */
+#define NAMED_MAX 3         /* maximum number of bounds in a message about a contradiction */
 /* Part of the sum of the multipliers above which a bound takes part in a contradiction. */
 #define TAKES_PART 1e-3
 #define PRETENSIONS_MAX 5 /* maximum number of pretensions that are tried for advice */
@@ -57,13 +58,14 @@ static int list_bounds(const hf_problem *p, hf_feasible_bound bound[HF_FEASIBLE_
     return n;
 }
 
-/* Adds the bounds by the rows of `requirements` that the nominal net has to meet. Returns the number of all bounds. */
+/* Adds the bounds by the rows of `requirements` about the nominal load case. If the design misses the bound of a row
+ * with a share, so do about half of its samples. Returns the number of all bounds. */
 static int add_required(const hf_required *q, int n, hf_feasible_bound bound[HF_FEASIBLE_BOUNDS_MAX])
 {
     for (int i = 0; i < q->n; i++) {
         const hf_requirement_settings *r = &q->row[i];
         const hf_required_column *cables = &q->column[q->low[i] < 0 ? q->high[i] : q->low[i]];
-        bool is_ratio = r->figure == HF_REQUIRED_RATIO, is_nominal = isnan(r->share) && q->states[i] & 1u;
+        bool is_ratio = r->figure == HF_REQUIRED_RATIO, is_nominal = !(r->share < SHARE_OF_DESIGN) && q->states[i] & 1u;
         if (!is_nominal || (!is_ratio && r->figure != HF_REQUIRED_TENSION)) continue;
         double most = isnan(r->at_most) ? (double)INFINITY : r->at_most;
         bound[n++] = (hf_feasible_bound){"requirements",

@@ -152,7 +152,7 @@ export const pages = [
       "optimize: {method: lm, front_points: 5, front: [{figure: psi}, {figure: ratio, set: boundary}]}\n" +
         "requirements: [{figure: psi, at_most: 0.0779, search: off}]\n",
     ),
-    sections: ["requirements", "front", "net", "cables", "map", "tensions", "summary", "form-finding", "provenance"],
+    sections: ["front", "requirements", "net", "cables", "map", "tensions", "summary", "form-finding", "provenance"],
   },
   {
     name: "tolerance",

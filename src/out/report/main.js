@@ -386,8 +386,9 @@ if (data.study) {
   writeStudy(data.study);
 } else {
   writeHead();
+  // The verdicts belong to the net after form-finding, which is no point of the front.
+  if (summary.front && !other) writeFront();
   writeRequirements();
-  if (!other) writeFront();
   writeMessages();
   writeAnswers();
   writeFigures();

@@ -265,6 +265,8 @@ function figureRows(first) {
   const objectives = Object.entries(first.objectives || {});
   const loss = (v) => (typeof v === "string" ? v : rounded(v, 3));
   const frequencies = (first.frequency_Hz || []).map((v) => `${fmt(v / 1e9, 4)} GHz`);
+  // Ruze's formula of errors without the weights of the illumination is not beside physical optics.
+  const isComputed = (k) => hasNumber((first.refocused_gain_loss_dB || [])[k]);
   const rows = [
     ["surface error ψ", "mm", "psi_m", mm],
     ["merit of all objectives", "", "merit", (v) => fmt(v, 5)],
@@ -302,10 +304,14 @@ function figureRows(first) {
       [`gain at ${at}, refocused feed`, "dBi", `refocused_gain_dBi[${k}]`, (v) => rounded(v, 5)],
       [`gain at ${at}, fixed feed`, "dBi", `fixed_gain_dBi[${k}]`, (v) => rounded(v, 5)],
       [`angle of the beam at ${at}, fixed feed`, "deg", `pointing_deg[${k}]`, (v) => rounded(v, 3)],
-      [`gain loss at ${at}`, "dB", `gain_loss_dB[${k}]`, loss],
-      [`gain loss at ${at}, best fit`, "dB", `fit_gain_loss_dB[${k}]`, loss],
-      [`gain loss of the facets at ${at}`, "dB", `facet_gain_loss_dB[${k}]`, loss],
-      [`gain loss of the facets at ${at}, best fit`, "dB", `facet_fit_gain_loss_dB[${k}]`, loss],
+      ...(isComputed(k)
+        ? []
+        : [
+            [`gain loss at ${at}, fixed feed (Ruze, nodes)`, "dB", `gain_loss_dB[${k}]`, loss],
+            [`gain loss at ${at}, refocused feed (Ruze, nodes)`, "dB", `fit_gain_loss_dB[${k}]`, loss],
+            [`gain loss at ${at}, fixed feed (Ruze, facets)`, "dB", `facet_gain_loss_dB[${k}]`, loss],
+            [`gain loss at ${at}, refocused feed (Ruze, facets)`, "dB", `facet_fit_gain_loss_dB[${k}]`, loss],
+          ]),
     ]),
     ["limit of Ruze’s formula (3 dB gain loss)", "GHz", "ruze_limit_Hz", hz],
     ["limit of Ruze’s formula, best fit", "GHz", "fit_ruze_limit_Hz", hz],
