@@ -54,6 +54,7 @@ static void print_aim(const job *j, FILE *f)
 {
     const hf_adjust_settings *s = j->task.settings;
     hf_print_text counted = hf_print_counted(j->built.model.n_inner_node, j->built.model.n_free);
+    const char *where = j->load_case ? " in the nominal load case" : "";
     const char *of = *counted.text ? " of " : "";
     if (s->figure != HF_FIGURE_PSI)
         hf_print_line(f,
@@ -61,12 +62,12 @@ static void print_aim(const job *j, FILE *f)
                       hf_adjust_figure_word[s->figure]);
     else if (s->aim == HF_AIM_DESIGN)
         hf_print_line(
-            f, "psi%s%s is measured from the design (adjust.aim), which is %.4f mm RMS from the target positions", of,
-            counted.text, j->design_psi_m * 1e3);
+            f, "psi%s%s is measured from the design (adjust.aim), which is %.4f mm RMS from the target positions%s", of,
+            counted.text, j->design_psi_m * 1e3, where);
     else
-        hf_print_line(f,
-                      "psi%s%s is measured from the target positions (adjust.aim); the design is %.4f mm RMS from them",
-                      of, counted.text, j->design_psi_m * 1e3);
+        hf_print_line(
+            f, "psi%s%s is measured from the target positions (adjust.aim); the design is %.4f mm RMS from them%s", of,
+            counted.text, j->design_psi_m * 1e3, where);
 }
 
 static void print_instead(const job *j, FILE *f)

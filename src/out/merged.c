@@ -455,7 +455,7 @@ int hf_merged_required(const hf_merged *m, int row[HF_REQUIREMENT_ROWS_MAX])
     bool is_whole = m->row_value.n == m->n && m->row_at_least.n == m->n && m->row_at_most.n == m->n, has_any = false;
     if (!is_whole || m->n_row > HF_REQUIREMENT_ROWS_MAX) return 0;
     for (int i = 0; i < m->n * m->n_row; i++)
-        has_any |= !isnan(m->row_value.value[i]);
+        has_any |= !isnan(m->row_value.value[i]) && hf_merged_is_done(m, i / m->n_row);
     for (int i = 0; i < m->n; i++)
         if (m->judgement[i].tightest >= 0) n_decided[m->judgement[i].tightest]++;
     for (; n < m->n_row && has_any; n++) {

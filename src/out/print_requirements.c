@@ -66,7 +66,9 @@ static void print_margin_of(const hf_requirement_verdict *v, char text[CELL])
 {
     char margin[CELL];
     value_text(unit_of(v), v->margin, margin);
-    if (isfinite(v->relative_margin))
+    if (!isfinite(v->margin)) /* a shape without the figure, such as a pattern without a beam */
+        snprintf(text, CELL, "none: the figure has no value");
+    else if (isfinite(v->relative_margin))
         snprintf(text, CELL, "%s%.60s (%+.3g %%)", v->margin >= 0 ? "+" : "", margin, 100 * v->relative_margin);
     else
         snprintf(text, CELL, "%s%.60s", v->margin >= 0 ? "+" : "", margin);

@@ -12,10 +12,10 @@
 #include <stddef.h>
 #include <string.h>
 
-#define WIDTH 100      /* maximum characters of a line of the table */
-#define POINTS_MOST 64 /* maximum number of points that are all shown */
-#define POINTS_BEST 32 /* points shown of a larger study, the best ones */
-#define REASON_MOST 60 /* characters of a reason */
+#define WIDTH 100       /* maximum characters of a line of the table */
+#define POINTS_MOST 64  /* maximum number of points that are all shown */
+#define POINTS_BEST 32  /* points shown of a larger study, the best ones */
+#define REASON_MOST 400 /* characters of a reason */
 #define CELL_SIZE HF_PRINT_TIGHTEST_SIZE
 #define NAME_MOST 60    /* characters of the name of a requirement */
 #define REQUIRED_MOST 5 /* requirements with a column; --verbose shows all */
@@ -344,7 +344,8 @@ static void print_required(const hf_merged *m, const column *c, int i, char text
 {
     double value = c->scale * m->row_value.value[(size_t)i * (size_t)m->n_row + (size_t)c->index];
     strcpy(text, "-");
-    if (!isnan(value)) snprintf(text, CELL_SIZE, "%.4g", value);
+    /* the figures of a point without a design are those of its net after form-finding */
+    if (!isnan(value) && hf_merged_is_done(m, i)) snprintf(text, CELL_SIZE, "%.4g", value);
 }
 
 static void print_cell(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])

@@ -29,7 +29,8 @@
 #define STEP_MOST_S 3.0 /* counted time of a step above which no step is tried */
 #define LONG_S 3600.0   /* above this time, or above LARGE_BYTES, advice is given */
 #define LARGE_BYTES 2e9
-#define TRIAL_S 1.0 /* approximate time of the trial of form-finding */
+#define TRIAL_S 1.0      /* approximate time of each trial */
+#define TRIAL_MOST_S 5.0 /* time after which a trial of Levenberg-Marquardt ends with its present step */
 /* Iterations of the first trial of form-finding, and the factor to the next. */
 #define FIRST_TRIAL 16
 #define TRIAL_GROWTH 4
@@ -280,8 +281,9 @@ static hf_status watch_step(void *context, const hf_refine_progress *now)
     if (now->iterations == 0) t->begin_s = hf_clock_s();
     if (now->iterations > 0 && now->iterations <= TRIAL_STEPS) t->n_failed += !(now->merit < t->merit);
     t->merit = now->merit;
-    return !now->is_last && now->iterations >= TRIAL_STEPS && hf_clock_s() > t->begin_s + TRIAL_S ? HF_INTERRUPTED
-                                                                                                  : HF_OK;
+    double took_s = hf_clock_s() - t->begin_s;
+    bool is_long = took_s > (now->iterations >= TRIAL_STEPS ? TRIAL_S : TRIAL_MOST_S);
+    return !now->is_last && now->iterations > 0 && is_long ? HF_INTERRUPTED : HF_OK;
 }
 
 /* Runs Levenberg-Marquardt from the initial design for about the time of a trial. If it has not ended then, the number
