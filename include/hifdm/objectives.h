@@ -33,6 +33,7 @@ typedef struct {
     int n_cable;                    /* number of cables in the set of the objective */
     int *cable;                     /* [n_cable] cables of the set, in ascending order; NULL without a set */
     int n_shape_row;                /* number of residuals of one shape */
+    bool takes_tail;                /* derivatives are needed: the mean of the worst samples replaces the quantile */
     int first_net, n_net;           /* as-built nets on which the objective is measured; n_net 0: the design itself */
     int first_row, n_row;           /* rows of the objective among all residuals, one shape after the other */
 } hf_objective;
@@ -54,8 +55,13 @@ typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *sh
  * functions of this struct. This module calls the functions through pointers because built/built_nets.h depends on this
  * module. The shape of an as-built net depends only on the design and on the index of the net. */
 typedef struct hf_objectives_nets {
-    int n_load_case, n_sample;         /* number of load cases and number of samples */
-    const char *const *load_case_name; /* [n_load_case] names of the load cases */
+    int n_load_case, n_sample; /* number of load cases and number of samples */
+    /* Load cases in which the samples exist. Net n_load_case + s n_sample + i is sample i in state s. State 0 is the
+     * nominal load case. State s > 0 is the load case with this index. If all load cases are present, they are in
+     * order. */
+    int n_sample_state;
+    int sample_load_case[1 + HF_LOAD_CASES_MAX]; /* [n_sample_state] */
+    const char *const *load_case_name;           /* [n_load_case] names of the load cases */
     /* Allocates the scratch memory *room of one thread. Returns HF_OK or HF_NO_MEMORY. Call `close` even if `open`
      * fails. */
     hf_status (*open)(const struct hf_objectives_nets *nets, void **room);
@@ -76,6 +82,10 @@ typedef struct hf_objectives_nets {
      * The array by_net [n] points to arrays that `room` owns. */
     void (*follow)(void *room, int n, const hf_objectives_rate *by_design, hf_objectives_rate *by_net);
 } hf_objectives_nets;
+static inline int hf_objectives_nets_count(const hf_objectives_nets *nets)
+{
+    return nets->n_load_case + nets->n_sample_state * nets->n_sample;
+}
 #define HF_OBJECTIVES_AT_ONCE 8 /* maximum number of rates in one call of `follow` */
 
 /* Writes the rates of the shape of the design by variable i_rate to move_m [3][n_node] and tension_rate [n_cable].
@@ -131,10 +141,12 @@ typedef struct hf_objectives_point {
     struct hf_cloud *cloud;        /* [n_objective] points, errors and best fit of the objectives surface and facets */
     void *nets;                    /* scratch of as-built nets; NULL without nets */
     void (*free_nets)(void *room); /* frees `nets` */
-    double *net_value; /* [n_objective][n_load_case + n_sample] value in each net; infinite if the net has no shape */
-    double *net_norm;  /* [n_objective][n_load_case + n_sample] norm of the residuals in each net */
-    double *net_part;  /* [n_objective][n_load_case + n_sample] norm divided by the smooth maximum, or scratch */
-    void *constraints; /* scratch of the constraints; NULL without constraints */
+    double *net_value; /* [n_objective][number of nets] value in each net; infinite if the net has no shape */
+    double *net_norm;  /* [n_objective][number of nets] norm of the residuals in each net */
+    /* [n_objective][number of nets] norm divided by the smooth maximum, or weight in the mean of the worst samples */
+    double *net_part;
+    double *net_order;                    /* [2 n_sample] scratch */
+    void *constraints;                    /* scratch of the constraints; NULL without constraints */
     void (*free_constraints)(void *room); /* frees `constraints` */
     double *constraint;                   /* [constraints->n] distances of the design that was judged last */
     void *block;                          /* owned memory behind the arrays */
@@ -187,8 +199,8 @@ void hf_objectives_push(const hf_objectives *objectives, const hf_workspace *wor
 
 /* ---- objectives over as-built nets ---- */
 
-/* Returns true if an objective has derivatives. A quantile has none. */
-bool hf_objectives_is_smooth(const hf_objective_settings *objective);
+/* Returns true if an objective has derivatives. A quantile has none, but the mean of the worst samples has. */
+bool hf_objectives_is_smooth(const hf_objective *objective);
 
 /* Returns true if an objective is measured on net i_net. */
 bool hf_objectives_are_over(const hf_objectives *objectives, int i_net);

@@ -99,7 +99,7 @@ static hf_status make_room_for(nets_room *r, const hf_workspace *w)
 static int load_case_of(const hf_built_nets *nets, int i_net, int *state)
 {
     *state = i_net < nets->as.n_load_case ? -1 : (i_net - nets->as.n_load_case) / nets->as.n_sample;
-    return *state < 0 ? i_net : *state == 0 ? -1 : nets->sample_load_case[*state];
+    return *state < 0 ? i_net : *state == 0 ? -1 : nets->as.sample_load_case[*state];
 }
 
 /* Returns the first net of a state of the samples. */
@@ -222,7 +222,8 @@ static hf_status load_state(nets_room *r, int state)
     const hf_built_nets *nets = r->nets;
     hf_built_loaded *to = &r->loaded[state];
     hf_messages messages = {0};
-    hf_built_loaded_select(nets->load_cases, nets->sample_load_case[state], &nets->rest, nets->model->n_attachment, to);
+    hf_built_loaded_select(nets->load_cases, nets->as.sample_load_case[state], &nets->rest, nets->model->n_attachment,
+                           to);
     hf_status status = hf_built_loaded_make(&r->built, r->batch, 1, to, &messages);
     hf_messages_free(&messages);
     return status;
@@ -239,7 +240,7 @@ static hf_status cut_for(void *room, const hf_workspace *w)
         HF_TRY(hf_built_renew(r->nets->model, w, &r->built));
         HF_TRY(hf_built_batch_renew(r->batch));
     }
-    for (int state = 1; state < r->nets->n_sample_state; state++)
+    for (int state = 1; state < r->nets->as.n_sample_state; state++)
         HF_TRY(load_state(r, state));
     return HF_OK;
 }
@@ -397,15 +398,15 @@ void hf_built_nets_make(const hf_scene *scene, const hf_model *model, const hf_f
                                    .cut = cut_for,
                                    .solve = solve_nets,
                                    .linearise = linearise_net,
-                                   .follow = follow_net},
+                                   .follow = follow_net,
+                                   .n_sample_state = 1},
                             .scene = scene,
                             .model = model,
                             .form = form,
                             .load_cases = load_cases,
                             .tolerance = tolerance,
                             .rest = *rest,
-                            .heat = *heat,
-                            .n_sample_state = 1};
+                            .heat = *heat};
     for (int i = 0; i < n_load_case; i++)
         nets->name[i] = load_cases->load_case[i].name;
 }

@@ -13,8 +13,6 @@
 #include "built/loaded.h"
 #include <hifdm/objectives.h>
 
-/* Samples in load cases: state 0 of a sample is the one without load case, state s > 0 that in load case
- * sample_load_case[s]. Net n_load_case + s n_sample + i is sample i in state s. Objectives are measured in state 0. */
 typedef struct {
     hf_objectives_nets as; /* the first member: the interface that objectives.h uses */
     const hf_scene *scene;
@@ -25,8 +23,6 @@ typedef struct {
     hf_built_rest rest;
     hf_built_heat heat; /* effects of the temperatures of samples */
     const char *name[HF_LOAD_CASES_MAX];
-    int n_sample_state;                          /* 1 if samples are needed without load case alone */
-    int sample_load_case[1 + HF_LOAD_CASES_MAX]; /* [n_sample_state] */
 } hf_built_nets;
 
 /* Makes the nets of n_sample samples and of all load cases in `states`. All pointers are borrowed. `states` is NULL

@@ -232,7 +232,7 @@ static int state_of_net(const hf_built_constraints *c, int i_net, int *i_sample)
     if (i_net < nets->n_load_case) return 1 + i_net;
     int state = (i_net - nets->n_load_case) / nets->n_sample;
     *i_sample = (i_net - nets->n_load_case) % nets->n_sample;
-    return state == 0 ? 0 : 1 + c->nets->sample_load_case[state];
+    return state == 0 ? 0 : 1 + c->nets->as.sample_load_case[state];
 }
 
 static void measure_net(void *context, int i_net, const hf_workspace *shape)
@@ -529,7 +529,7 @@ static hf_status linearise_design(void *room, int n_rate, hf_constraints_spread 
     const hf_objectives_nets *nets = c->nets ? &c->nets->as : NULL;
     const hf_workspace *shape;
     begin_net(r);
-    int n_all = nets ? nets->n_load_case + c->nets->n_sample_state * nets->n_sample : 0;
+    int n_all = nets ? hf_objectives_nets_count(nets) : 0;
     memset(rate, 0, (size_t)c->as.n * (size_t)n_rate * sizeof *rate);
     int n = list_terms(r, 0, -1, r->design);
     HF_TRY(add_rates(r, n, r->design, false, n_rate, spread, context, rate));
@@ -665,8 +665,8 @@ hf_status hf_built_constraints_make(const hf_required *q, const hf_model *m, con
     }
     for (int state = 0; state < q->n_state; state++) {
         c->state_of_samples[state] = state == 0 ? 0 : -1;
-        for (int s = 1; nets && s < nets->n_sample_state; s++)
-            if (nets->sample_load_case[s] == state - 1) c->state_of_samples[state] = s;
+        for (int s = 1; nets && s < nets->as.n_sample_state; s++)
+            if (nets->as.sample_load_case[s] == state - 1) c->state_of_samples[state] = s;
     }
     return HF_OK;
 }

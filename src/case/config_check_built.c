@@ -232,8 +232,6 @@ static void check_load_case(const hf_case *c, const char *list, int row, const h
         name[i] = b->load_case[i].name;
         is_known |= !strcmp(name[i], g->load_case);
     }
-    if (g->over != HF_OVER_DESIGN)
-        hf_config_fault_in_row(f, list, row, "load_case", "does not go with over: samples; remove one of them");
     if (!hf_config_is_read(c, load_case_list)) return;
     if (b->n_load_case == 0)
         snprintf(what, sizeof what, "needs load cases of the as-built net; add rows to `load_cases`");
@@ -254,10 +252,6 @@ static void check_quantile(const hf_optimize_settings *o, const char *list, int 
         hf_config_fault_in_row(f, list, row, "quantile", "has a meaning for over: samples alone");
     if (hf_config_is_given_in_row(f, list, row, "take"))
         hf_config_fault_in_row(f, list, row, "quantile", "stands in place of take; remove one of them");
-    if (o->method != HF_OPTIMIZE_GA)
-        hf_config_fault_in_row(f, list, row, "quantile",
-                               "has no derivatives, which Levenberg-Marquardt needs: use method: ga, or take: mean or "
-                               "worst");
     if (o->method == HF_OPTIMIZE_GA && o->refine == HF_REFINE_TRUE)
         hf_config_fault_in_row(f, list, row, "quantile",
                                "has no derivatives, which optimize.refine: true needs; remove one of them");
@@ -269,13 +263,17 @@ static void check_objective(const hf_optimize_settings *o, const char *list, int
                             hf_config_faults *f)
 {
     bool is_largest = g->figure == HF_FIGURE_PULL || g->figure == HF_FIGURE_DEFLECTION || g->figure == HF_FIGURE_RATIO;
-    bool is_worst = (g->over == HF_OVER_SAMPLES || hf_objective_takes_load_cases(g)) && g->take == HF_TAKE_WORST &&
-                    !(g->quantile > 0);
+    bool is_quantile = g->quantile > 0, is_over_nets = g->over == HF_OVER_SAMPLES || hf_objective_takes_load_cases(g);
+    bool is_worst = is_quantile || (is_over_nets && g->take == HF_TAKE_WORST);
     bool is_of_nets = *g->load_case || g->over != HF_OVER_DESIGN;
     if (o->n_front > 0 && o->method != HF_OPTIMIZE_GA && (is_worst || (is_of_nets && is_largest)))
-        hf_config_fault_in_row(f, list, row, is_worst ? "take" : "figure",
-                               is_worst ? "worst needs method: ga in optimize.front"
-                                        : "as the maximum over as-built nets needs method: ga in optimize.front");
+        hf_config_fault_in_row(f, list, row,
+                               is_quantile ? "quantile"
+                               : is_worst  ? "take"
+                                           : "figure",
+                               is_quantile ? "needs method: ga in optimize.front"
+                               : is_worst  ? "worst needs method: ga in optimize.front"
+                                           : "as the maximum over as-built nets needs method: ga in optimize.front");
 }
 
 void hf_config_check_nets(const hf_case *c, const char *list, int n_objective, const hf_objective_settings *objective,

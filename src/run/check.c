@@ -92,7 +92,7 @@ static void count_variables(hf_check *c)
 static void count_nets(hf_check *c)
 {
     const hf_objectives_nets *nets = c->problem.objectives.nets;
-    for (int i = 0; nets && i < nets->n_load_case + nets->n_sample; i++) {
+    for (int i = 0; nets && i < hf_objectives_nets_count(nets); i++) {
         c->n_net += hf_objectives_are_over(&c->problem.objectives, i);
         c->n_sample += i >= nets->n_load_case;
     }

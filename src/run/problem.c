@@ -50,13 +50,13 @@ hf_status hf_problem_has_slopes(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *s = &p->settings.optimize;
     char place[HF_LOCATION_SIZE];
-    if (hf_refine_applies(&p->evaluator)) return HF_OK;
-    for (int k = 0; k < p->objectives.n_objective; k++)
-        if (!hf_objectives_is_smooth(&p->objectives.objective[k].settings))
+    for (int k = 0; k < p->objectives.n_objective; k++) /* the value is the quantile, whatever the refinement takes */
+        if (p->objectives.objective[k].settings.quantile > 0)
             return hf_error(messages, HF_BAD_CASE,
                             "%s: quantiles have no derivatives. Use `take: mean` or `take: worst`",
                             hf_messages_location(messages, place, "optimize.%s.%d.quantile",
                                                  s->n_front > 0 ? "front" : "objective", k));
+    if (hf_refine_applies(&p->evaluator)) return HF_OK;
     return hf_error(messages, HF_BAD_CASE, "%s", hf_problem_no_slopes(p));
 }
 

@@ -85,6 +85,30 @@ static bool constrains(const hf_problem *p)
     return is_any;
 }
 
+/* Returns the bits of the load cases in which rows of objectives need samples; load case k has bit 1 + k. */
+static unsigned states_of_rows(const hf_problem *p, int n, const hf_objective_settings *row)
+{
+    unsigned states = 0;
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < p->load_cases.n && row[i].over == HF_OVER_SAMPLES && *row[i].load_case; k++)
+            if (hf_objective_takes_load_cases(&row[i]) || !strcmp(row[i].load_case, p->load_cases.load_case[k].name))
+                states |= 2u << k;
+    return states;
+}
+
+static unsigned states_of_objectives(const hf_problem *p)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    return states_of_rows(p, o->n_term, o->term) | states_of_rows(p, o->n_front, o->front);
+}
+
+/* Lists the load cases of the samples in the order of the case, as hf_objectives_nets wants them. */
+static void list_states(const hf_problem *p, unsigned states, hf_objectives_nets *nets)
+{
+    for (int k = 0; k < p->load_cases.n; k++)
+        if (states >> (1 + k) & 1u) nets->sample_load_case[nets->n_sample_state++] = k;
+}
+
 /* Adds to the nets the load cases of samples, and makes the constraints. */
 static hf_status make_constraints(hf_problem *p, hf_messages *messages)
 {
@@ -92,8 +116,7 @@ static hf_status make_constraints(hf_problem *p, hf_messages *messages)
     HF_TRY(hf_requirements_stage_rows(p, &q->masses, &q->required, messages));
     unsigned many = hf_built_constraints_states(&q->required, true);
     bool has_nets = many || hf_built_constraints_states(&q->required, false) > 1u;
-    for (int state = 1; state < q->required.n_state; state++)
-        if (many >> state & 1u) q->nets.sample_load_case[q->nets.n_sample_state++] = state - 1;
+    list_states(p, many | states_of_objectives(p), &q->nets.as);
     hf_status status = hf_built_constraints_make(&q->required, &p->model, has_nets ? &q->nets : NULL, &p->surface,
                                                  &p->facets, &q->constraints);
     return status == HF_OK ? HF_OK : hf_error(messages, status, "out of memory for the requirements");
@@ -119,7 +142,9 @@ hf_status hf_problem_nets_make(hf_problem *p, hf_messages *messages)
     p->nets->by_weight_m = by_weight;
     p->nets->truss_move_m_per_K = by_heat;
     HF_TRY(make_nets(p, has_load_cases, n_sample, messages));
-    return is_constrained ? make_constraints(p, messages) : HF_OK;
+    if (is_constrained) return make_constraints(p, messages);
+    list_states(p, states_of_objectives(p), &p->nets->nets.as);
+    return HF_OK;
 }
 
 void hf_problem_nets_free(hf_problem *p)

@@ -75,7 +75,7 @@ bool hf_refine_applies(const hf_evaluator *v)
     for (int k = 0; k < v->model->n_variable; k++)
         if (hf_evaluate_sets(v, k) == HF_SETS_START) return false;
     for (int k = 0; v->objectives && k < v->objectives->n_objective; k++)
-        if (!hf_objectives_is_smooth(&v->objectives->objective[k].settings)) return false;
+        if (!hf_objectives_is_smooth(&v->objectives->objective[k])) return false;
     return v->model->has_newton && v->model->n_variable > 0;
 }
 
@@ -88,9 +88,7 @@ static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
     double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
     double n_row = v->objectives && v->objectives->nets ? v->objectives->n_row : 3.0 * m->n_inner_node;
     double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (n_row + 2 * n);
-    for (int i = 0;
-         v->objectives && v->objectives->nets && i < v->objectives->nets->n_load_case + v->objectives->nets->n_sample;
-         i++) {
+    for (int i = 0; v->objectives && v->objectives->nets && i < hf_objectives_nets_count(v->objectives->nets); i++) {
         if (!hf_objectives_are_over(v->objectives, i)) continue;
         evaluation += newton;
         step += STEP_EVALUATIONS * newton + newton + factor + n * solve;

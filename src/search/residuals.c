@@ -153,7 +153,7 @@ hf_status hf_residuals_rates(const hf_residuals *r, const hf_sensitivity *slopes
     hf_parallel_each(r->v->n_thread, slopes->n, rate_one, &q);
     if (nets) {
         hf_parallel_each(r->v->n_thread, r->n_room, cut_nets, &q);
-        hf_parallel_each(r->v->n_thread, nets->n_load_case + nets->n_sample, rate_net, &q);
+        hf_parallel_each(r->v->n_thread, hf_objectives_nets_count(nets), rate_net, &q);
         for (int i = 0; i < r->n_room; i++)
             HF_TRY(r->room[i].status);
     }

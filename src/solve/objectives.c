@@ -77,10 +77,11 @@ static void lay_out_point(hf_arena *a, const hf_objectives *objectives, hf_objec
     p->rate_N = hf_arena_take(a, 3 * n_support, sizeof(double));
     p->size = hf_arena_take(a, n_size, sizeof(double));
     p->row = hf_arena_take(a, (size_t)objectives->n_row, sizeof(double));
-    size_t n_net = objectives->nets ? (size_t)objectives->nets->n_load_case + (size_t)objectives->nets->n_sample : 0;
+    size_t n_net = objectives->nets ? (size_t)hf_objectives_nets_count(objectives->nets) : 0;
     p->net_value = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_norm = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_part = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
+    p->net_order = hf_arena_take(a, objectives->nets ? 2 * (size_t)objectives->nets->n_sample : 0, sizeof(double));
     p->constraint = hf_arena_take(a, objectives->constraints ? (size_t)objectives->constraints->n : 0, sizeof(double));
     p->cloud = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->cloud);
     p->gain = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->gain);
@@ -291,9 +292,9 @@ static hf_status measure_shape(const hf_objectives *objectives, int k, const hf_
 
 /* ---- which nets ---- */
 
-bool hf_objectives_is_smooth(const hf_objective_settings *objective)
+bool hf_objectives_is_smooth(const hf_objective *objective)
 {
-    return !(objective->quantile > 0);
+    return !(objective->settings.quantile > 0) || objective->takes_tail;
 }
 
 static bool is_over(const hf_objective *g, int i_net)
@@ -316,7 +317,7 @@ static int row_of_net(const hf_objective *g, int i_net)
 
 static size_t place_of_net(const hf_objectives *objectives, int k, int i_net)
 {
-    return (size_t)k * ((size_t)objectives->nets->n_load_case + (size_t)objectives->nets->n_sample) + (size_t)i_net;
+    return (size_t)k * (size_t)hf_objectives_nets_count(objectives->nets) + (size_t)i_net;
 }
 
 /* ---- residuals over as-built nets ---- */
@@ -353,15 +354,15 @@ static hf_status measure_nets(const hf_objectives *objectives, const hf_workspac
 {
     const hf_objectives_nets *nets = objectives->nets;
     measured_nets q = {objectives, p, residual, HF_OK};
-    int n_load_case = nets->n_load_case, n_sample = nets->n_sample;
-    bool has_samples = n_sample > 0 && hf_objectives_are_over(objectives, n_load_case);
+    int n_load_case = nets->n_load_case, n_all = hf_objectives_nets_count(nets);
     hf_status status = nets->cut(p->nets, w);
     if (status == HF_NO_MEMORY) return status;
-    for (int i = 0; i < n_load_case + n_sample && status != HF_OK; i++)
+    for (int i = 0; i < n_all && status != HF_OK; i++)
         measure_net(&q, i, NULL);
     for (int i = 0; i < n_load_case && status == HF_OK; i++)
         if (hf_objectives_are_over(objectives, i)) nets->solve(p->nets, i, 1, measure_net, &q);
-    if (has_samples && status == HF_OK) nets->solve(p->nets, n_load_case, n_sample, measure_net, &q);
+    for (int i = n_load_case; i < n_all && status == HF_OK; i += nets->n_sample) /* samples in one load case */
+        if (hf_objectives_are_over(objectives, i)) nets->solve(p->nets, i, nets->n_sample, measure_net, &q);
     return q.status;
 }
 
@@ -388,6 +389,52 @@ static double scale_worst(const hf_objective *g, const double *norm, double *par
     return smooth;
 }
 
+/* Writes the largest value of each sample over its load cases, worst [n_sample], from value [n_net]. */
+static void find_worst(const hf_objective *g, int n_sample, const double *value, double *worst)
+{
+    memcpy(worst, value, (size_t)n_sample * sizeof *worst);
+    for (int s = n_sample; s < g->n_net; s++)
+        worst[s % n_sample] = fmax(worst[s % n_sample], value[s]);
+}
+
+/* Returns the mean of the worst samples, which are the share 1 - quantile of all (CVaR: Rockafellar and Uryasev, 2000),
+ * but at least one. part [n_net] becomes the weight of each net in this mean; a sample counts in the load case in which
+ * it is worst. order [2 n_sample] is scratch. */
+static double mean_of_worst(const hf_objective *g, int n_sample, const double *norm, double *part, double *order)
+{
+    double size = fmax(1, (1 - g->settings.quantile) * n_sample), mean = 0, *sorted = order + n_sample;
+    int whole = (int)floor(size * (1 + 1e-12)), n_above = 0, n_at = 0;
+    find_worst(g, n_sample, norm, order);
+    memcpy(sorted, order, (size_t)n_sample * sizeof *sorted);
+    qsort(sorted, (size_t)n_sample, sizeof *sorted, hf_compare_doubles);
+    double last =
+        sorted[n_sample - 1 - (whole < n_sample ? whole : n_sample - 1)]; /* the first one not counted whole */
+    for (int i = 0; i < n_sample; i++) {
+        n_above += order[i] > last;
+        n_at += order[i] == last;
+    }
+    for (int s = 0; s < g->n_net; s++) {
+        double *worst = &order[s % n_sample];
+        part[s] = 0;
+        if (!(norm[s] >= *worst)) continue;
+        part[s] = (*worst > last ? 1 : *worst == last ? fmax(0, size - n_above) / n_at : 0) / size;
+        if (part[s] > 0) mean += part[s] * norm[s];
+        *worst = INFINITY; /* the sample has been counted */
+    }
+    return mean;
+}
+
+/* Multiplies the residuals f of each net by sqrt(w C/S), so that their norm is C, the sum of w S. part [n_net] has
+ * w. */
+static void scale_tail(const hf_objective *g, const double *norm, const double *part, double mean, double *f)
+{
+    for (int s = 0; s < g->n_net; s++) {
+        double factor = norm[s] > 0 ? sqrt(part[s] * mean / norm[s]) : 0;
+        for (int i = 0; i < g->n_shape_row; i++)
+            f[s * g->n_shape_row + i] *= factor;
+    }
+}
+
 /* Combines the nets of objective k: sets *value and *norm. Except for a quantile, its residuals f [n_row of the
  * objective] are scaled so that they have this norm. */
 static void gather_nets(const hf_objectives *objectives, int k, hf_objectives_point *p, double *f, double *value,
@@ -402,8 +449,15 @@ static void gather_nets(const hf_objectives *objectives, int k, hf_objectives_po
     *norm = hf_max_magnitude(n, norm_of_net);
     if (g->n_net == 1) return;
     if (g->settings.quantile > 0) {
-        *value = quantile_of(g->n_net, of_net, g->settings.quantile, part);
-        *norm = quantile_of(g->n_net, norm_of_net, g->settings.quantile, part);
+        int n_sample = objectives->nets->n_sample;
+        double *worst = p->net_order, *scratch = worst + n_sample;
+        find_worst(g, n_sample, of_net, worst);
+        *value = quantile_of(n_sample, worst, g->settings.quantile, scratch);
+        find_worst(g, n_sample, norm_of_net, worst);
+        *norm = quantile_of(n_sample, worst, g->settings.quantile, scratch);
+        if (!g->takes_tail) return;
+        *norm = mean_of_worst(g, n_sample, norm_of_net, part, worst);
+        if (isfinite(*norm)) scale_tail(g, norm_of_net, part, *norm, f);
     } else if (isfinite(*norm) && g->settings.take == HF_TAKE_WORST) {
         *norm = scale_worst(g, norm_of_net, part, f);
     } else if (isfinite(*norm)) {
@@ -637,6 +691,30 @@ static void close_worst(const hf_objective *g, const double *norm, const double 
         }
 }
 
+/* Replaces rate, the changes dg of the residuals g of each net alone, by the changes of f = weight sqrt(w C/S) g, the
+ * residuals of the objective: df = weight sqrt(w C/S) dg + f/2 (dC/C - dS/S) with dC = sum of w dS. */
+static void close_tail(const hf_objective *g, const double *norm, const double *part, const double *f, double *rate)
+{
+    double mean = 0, mean_rate = 0;
+    size_t n = (size_t)g->n_shape_row;
+    for (int s = 0; s < g->n_net; s++)
+        if (part[s] > 0) mean += part[s] * norm[s];
+    for (int pass = 0; pass < 2; pass++)
+        for (int s = 0; s < g->n_net; s++) {
+            const double *of_net = f + (size_t)s * n;
+            double *by_net = rate + (size_t)s * n, length = sqrt(hf_dot(n, of_net, of_net));
+            double norm_rate = length > 0 ? hf_dot(n, of_net, by_net) / length : 0;
+            if (pass == 0) {
+                mean_rate += part[s] * norm_rate;
+                continue;
+            }
+            double factor = length > 0 ? g->settings.weight * sqrt(part[s] * mean / norm[s]) : 0;
+            double turn = length > 0 ? (mean_rate / mean - norm_rate / norm[s]) / 2 : 0;
+            for (size_t i = 0; i < n; i++)
+                by_net[i] = factor * by_net[i] + turn * of_net[i];
+        }
+}
+
 void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectives_point *p, const double *residual,
                               double *rate)
 {
@@ -644,8 +722,12 @@ void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectiv
         const hf_objective *g = &objectives->objective[k];
         double *of_objective = rate + g->first_row;
         if (g->n_net == 0) continue;
+        size_t at = place_of_net(objectives, k, g->first_net);
+        if (g->takes_tail && g->n_net > 1) {
+            close_tail(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_objective);
+            continue;
+        }
         if (g->settings.take == HF_TAKE_WORST && g->n_net > 1) {
-            size_t at = place_of_net(objectives, k, g->first_net);
             close_worst(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_objective);
             continue;
         }

@@ -137,7 +137,12 @@ static void choose_nets(const hf_objectives_nets *nets, hf_objective *g)
     for (int k = 0; nets && *s->load_case && k < nets->n_load_case; k++)
         if (!strcmp(nets->load_case_name[k], s->load_case)) g->first_net = k, g->n_net = 1;
     if (nets && hf_objective_takes_load_cases(s)) g->n_net = nets->n_load_case;
-    if (nets && s->over == HF_OVER_SAMPLES) g->first_net = nets->n_load_case, g->n_net = nets->n_sample;
+    if (!nets || s->over != HF_OVER_SAMPLES) return;
+    int state = 0, n_state = hf_objective_takes_load_cases(s) ? nets->n_sample_state : 1;
+    for (int k = 1; k < nets->n_sample_state && *s->load_case && n_state == 1; k++)
+        if (!strcmp(nets->load_case_name[nets->sample_load_case[k]], s->load_case)) state = k;
+    g->first_net = nets->n_load_case + state * nets->n_sample;
+    g->n_net = n_state * nets->n_sample;
 }
 
 /* Makes the beam of objective k, if it is a gain. Without a frequency in the row it uses the highest one of the
@@ -182,6 +187,8 @@ hf_status hf_objectives_create(const hf_scene *scene, const hf_model *m, const h
         if (is_front) objectives->objective[k].settings.weight = 1;
         if (is_of_facets(objectives->objective[k].settings.figure) && facets) objectives->n_facet = facets->n_facet;
         choose_nets(nets, &objectives->objective[k]);
+        objectives->objective[k].takes_tail =
+            objectives->objective[k].settings.quantile > 0 && s->method != HF_OPTIMIZE_GA;
         if (objectives->objective[k].n_net) objectives->nets = nets;
     }
     if (surface) {
@@ -216,7 +223,10 @@ const char *hf_objectives_name(const hf_objectives *objectives, int i_objective,
     int n = snprintf(text, HF_OBJECTIVE_NAME_SIZE, "objective_%d_%s%s%s", i_objective, hf_figure_kind_word[s->figure],
                      *s->set ? "_" : "", s->set);
     const char *of_many = s->quantile > 0 ? "quantile" : hf_take_word[s->take];
-    if (hf_objective_takes_load_cases(s))
+    if (*s->load_case && s->over == HF_OVER_SAMPLES)
+        snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%.24s_%s_%s", s->load_case, hf_over_word[s->over],
+                 of_many);
+    else if (hf_objective_takes_load_cases(s))
         snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_load_cases_%s", of_many);
     else if (*s->load_case) /* as much of the name as fits */
         snprintf(text + n, HF_OBJECTIVE_NAME_SIZE - (size_t)n, "_%.24s", s->load_case);

@@ -2,6 +2,7 @@
  * values against the states and samples of other modules, and what they must be where nothing differs. */
 #include "built_nets.h"
 
+#include "base/elementary.h"
 #include "built/montecarlo.h"
 #include "run/load_case_stage.h"
 #include "run/problem_parts.h"
@@ -10,6 +11,18 @@
 enum { MAX_TRIED = 3 };
 #define MOVE_M 2.5e-4 /* of the node that a step moves most: differences of order 4 are off by some (MOVE_M/l)^4 */
 #define AGREEMENT 1e-7
+
+static const char all_objectives[] =
+    "optimize.objective=[{figure: psi}, {figure: psi, load_case: cold}, {figure: psi, load_case: up, weight: 2}, "
+    "{figure: psi, load_case: all}, {figure: psi, load_case: all, take: worst}, {figure: psi, over: samples, weight: "
+    "3}, "
+    "{figure: psi, over: samples, take: worst, weight: 2}, {figure: tension, set: directrix, target: 12, load_case: "
+    "moved}, "
+    "{figure: ratio, set: generatrix, over: samples}, {figure: pull, load_case: all, take: worst}, "
+    "{figure: length, set: inner, load_case: all}, {figure: evenness, over: samples, take: worst}, "
+    "{figure: gain, load_case: up}, {figure: gain, over: samples, take: worst}, "
+    "{figure: psi, over: samples, load_case: all, quantile: 0.6, weight: 2}, "
+    "{figure: pull, over: samples, load_case: cold, quantile: 0.5}]";
 
 static void open_problem(hf_problem *p, bool on_truss, const char *variables, const char *objectives)
 {
@@ -29,6 +42,7 @@ static void open_problem(hf_problem *p, bool on_truss, const char *variables, co
     if (on_truss) set[n++] = "truss.expansion_per_K=1e-6";
     if (on_truss)
         set[n++] = "tolerance.truss=[{part: bud, sigma_temperature_K: 5}, {part: truss, sigma_temperature_K: 3}]";
+    if (objectives == all_objectives) set[n++] = "optimize.method=lm"; /* so that quantiles have derivatives */
     if (variables) set[n++] = variables;
     if (variables) set[n++] = "optimize.symmetry=none";
     open_built_problem(p, on_truss, set);
@@ -114,16 +128,6 @@ static const char *const varied[] = {
     "optimize.variables=[{set: edge_tie, vary: length, range: 0.01}]",
     "optimize.variables=[{set: edge_tie, vary: support_z, range: 0.01, link: each}]",
 };
-static const char all_objectives[] =
-    "optimize.objective=[{figure: psi}, {figure: psi, load_case: cold}, {figure: psi, load_case: up, weight: 2}, "
-    "{figure: psi, load_case: all}, {figure: psi, load_case: all, take: worst}, {figure: psi, over: samples, weight: "
-    "3}, "
-    "{figure: psi, over: samples, take: worst, weight: 2}, {figure: tension, set: directrix, target: 12, load_case: "
-    "moved}, "
-    "{figure: ratio, set: generatrix, over: samples}, {figure: pull, load_case: all, take: worst}, "
-    "{figure: length, set: inner, load_case: all}, {figure: evenness, over: samples, take: worst}, "
-    "{figure: gain, load_case: up}, {figure: gain, over: samples, take: worst}]";
-
 /* The room and the net are there: what is asked for is the linear answer. */
 START_TEST(a_net_without_memory_is_told)
 {
@@ -299,6 +303,59 @@ START_TEST(nets_that_do_not_differ_are_the_design)
 }
 END_TEST
 
+static const char sampled_objectives[] =
+    "optimize.objective=[{figure: psi, over: samples, load_case: up}, {figure: psi, over: samples, load_case: moved}, "
+    "{figure: psi, over: samples, load_case: all, take: worst}, {figure: psi, over: samples, load_case: all, quantile: "
+    "0.6}, {figure: psi, load_case: up}, {figure: psi, load_case: moved}, {figure: psi, load_case: all, take: worst}, "
+    "{figure: psi}]";
+
+/* Without errors, the samples in a load case are the load case. */
+START_TEST(samples_in_load_cases_without_errors)
+{
+    hf_problem p;
+    hf_form_result r;
+    open_problem(&p, _i, NULL, sampled_objectives);
+    hf_tolerance_settings *t = &p.settings.tolerance;
+    t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
+    t->n_truss = 0;
+    evaluate_base(&p, &r);
+    assert_near(r.objective[0], r.objective[4]);
+    assert_near(r.objective[1], r.objective[5]);
+    assert_near(r.objective[2], fmax(r.objective[6], r.objective[7]));
+    assert_near(r.objective[3], r.objective[2]);
+    hf_problem_free(&p);
+}
+END_TEST
+
+/* The quantile and, as merit where derivatives are needed, the mean of the worst samples, from the values of the nets.
+ * A sample has its largest value of all load cases. */
+START_TEST(quantiles_over_load_cases)
+{
+    enum { N = 6, N_STATE = 4 }; /* the nominal load case and three others */
+    static const char *const method[] = {"optimize.method=ga", "optimize.method=lm"};
+    static const double quantile[] = {0.4, 0.6, 0.95};
+    hf_problem p;
+    hf_form_result r;
+    char objective[200];
+    double q = quantile[_i / 2], worst[N] = {0}, tail = 0, left = fmax(1, (1 - q) * N);
+    bool is_lm = _i % 2;
+    snprintf(objective, sizeof objective,
+             "optimize.objective=[{figure: psi, over: samples, load_case: all, quantile: %g}]", q);
+    open_problem(&p, false, method[is_lm], objective);
+    evaluate_base(&p, &r);
+    ck_assert_int_eq(hf_objectives_nets_count(p.objectives.nets), 3 + N_STATE * N);
+    for (int s = 0; s < N_STATE * N; s++)
+        worst[s % N] = fmax(worst[s % N], p.point.net_value[3 + s]);
+    qsort(worst, N, sizeof *worst, hf_compare_doubles);
+    for (int i = N - 1; i >= 0 && left > 0; i--, left--)
+        tail += worst[i] * fmin(1, left) / fmax(1, (1 - q) * N);
+    ck_assert_double_gt(worst[N - 1], 1.00001 * worst[0]);
+    assert_near(r.objective[0], worst[(int)ceil(q * N) - 1]);
+    assert_near(r.merit, is_lm ? tail : r.objective[0]);
+    hf_problem_free(&p);
+}
+END_TEST
+
 /* A design is judged alike after any other, and by any room. */
 START_TEST(values_do_not_depend_on_earlier_designs)
 {
@@ -333,6 +390,8 @@ Suite *suite_unit_built_nets(void)
     tcase_add_loop_test(tcase, values_over_samples_are_those_of_tolerances, 0, 2);
     tcase_add_loop_test(tcase, values_of_load_cases_are_those_of_cases, 0, 2);
     tcase_add_loop_test(tcase, nets_that_do_not_differ_are_the_design, 0, 2);
+    tcase_add_loop_test(tcase, samples_in_load_cases_without_errors, 0, 2);
+    tcase_add_loop_test(tcase, quantiles_over_load_cases, 0, 6);
     tcase_add_loop_test(tcase, values_do_not_depend_on_earlier_designs, 0, 2);
     suite_add_tcase(suite, tcase);
     return suite;
