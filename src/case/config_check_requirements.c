@@ -141,7 +141,8 @@ static void check_against_earlier(const hf_case *c, int i, hf_config_faults *f)
             snprintf(what, sizeof what, "is bounded by %s.%d already; keep one of the rows", list, k);
             hf_config_fault_in_row(f, list, i, "figure", what);
         } else if (mine[0] > other[1] || mine[1] < other[0]) {
-            snprintf(what, sizeof what, "contradicts %s.%d: no value meets both rows", list, k);
+            snprintf(what, sizeof what, "contradicts %s.%d: no value meets both rows. Change or remove one of them",
+                     list, k);
             hf_config_fault_in_row(f, list, i, "figure", what);
         }
     }

@@ -222,25 +222,28 @@ static double factor_of(hf_required_figure figure, const double bounds[2], doubl
 /* Warns about a bound that is probably in mm, kN or g. The factor allows that the value is five times off the bound in
  * the right unit: with a bound in mm, a value that fails by 8 % is less than a thousand times off. */
 #define OTHER_UNIT 200.0
-static void doubt_bound(int i, const char *key, hf_required_figure figure, double bound, const char *what, double value,
+static void doubt_bound(const char *place, hf_required_figure figure, double bound, const char *what, double value,
                         double factor, hf_messages *messages)
 {
     const char *unit = hf_required_figure_unit[figure], *small = *unit == 'm' ? "mm" : *unit == 'k' ? "g" : "mN";
     if (factor < OTHER_UNIT) return;
-    hf_warning(messages,
-               "requirements.%d%s: the bound %.6g %s (%.6g %s) and the %s %.6g %s (%.6g %s) differ by a factor of "
-               "%.3g. Check the unit of the bound",
-               i, key, bound, unit, bound * 1e3, small, what, value, unit, value * 1e3, small, factor);
+    hf_warning(
+        messages,
+        "%s: the bound %.6g %s (%.6g %s) and the %s %.6g %s (%.6g %s) differ by a factor of %.3g. Check the unit "
+        "of the bound",
+        place, bound, unit, bound * 1e3, small, what, value, unit, value * 1e3, small, factor);
 }
 
-static void doubt_bounds(const hf_requirement_verdict *v, int i, hf_messages *messages)
+static void doubt_bounds(const hf_case *c, const hf_requirement_verdict *v, int i, hf_messages *messages)
 {
     const hf_requirement_settings *r = &v->row;
+    char place[HF_LOCATION_SIZE];
     const double bounds[2] = {r->at_least, r->at_most};
     bool is_most = false;
     double factor = factor_of(r->figure, bounds, v->value, &is_most);
-    const char *key = isfinite(r->within[is_most]) ? ".within" : is_most ? ".at_most" : ".at_least";
-    doubt_bound(i, key, r->figure, bounds[is_most], "value", v->value, factor, messages);
+    const char *key = isfinite(r->within[is_most]) ? "within" : is_most ? "at_most" : "at_least";
+    hf_config_place(c, place, "requirements.%d.%s", i, key);
+    doubt_bound(place, r->figure, bounds[is_most], "value", v->value, factor, messages);
 }
 
 /* A requirement at one point of a study, from the row of the ledger. */
@@ -285,10 +288,13 @@ void hf_requirements_stage_doubt_points(const hf_points *points, hf_messages *me
             nearest[i] = row[i];
             nearest[i].bounds[0] = row[i].bounds[is_most];
         }
-    for (int i = 0; i < HF_REQUIREMENT_ROWS_MAX; i++)
+    for (int i = 0; i < HF_REQUIREMENT_ROWS_MAX; i++) {
+        char place[32];
+        snprintf(place, sizeof place, "requirements.%d", i);
         if (least[i] > 0)
-            doubt_bound(i, "", nearest[i].figure, nearest[i].bounds[0], "nearest value of all points", nearest[i].value,
+            doubt_bound(place, nearest[i].figure, nearest[i].bounds[0], "nearest value of all points", nearest[i].value,
                         least[i], messages);
+    }
 }
 
 hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
@@ -303,7 +309,7 @@ hf_status hf_stage_verdicts(hf_run *r, hf_summary *s, hf_messages *messages)
     if (of->n_share == 0) HF_TRY(make_verdicts(q, s, messages));
     hf_requirements_stage_judge_design(q, s->requirement);
     for (int i = 0; i < of->n; i++)
-        doubt_bounds(&s->requirement[i], i, messages);
+        doubt_bounds(&r->problem.settings, &s->requirement[i], i, messages);
     s->n_requirement = of->n;
     return HF_OK;
 }

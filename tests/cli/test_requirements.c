@@ -592,11 +592,11 @@ START_TEST(a_bound_in_another_unit_is_doubted)
                                         "  - {figure: slack_cables, at_most: 5}\n",
                *path = temp("a.h5");
     HIFDM(0, "run", file_with("c.yaml", formatted(text, "8", "30")), "-o", path);
-    ERR("warning: requirements.0.at_most: the bound 8 m (8000 mm) and the value 0.0392743 m (39.2743 mm) differ by a "
+    ERR("requirements.0.at_most: the bound 8 m (8000 mm) and the value 0.0392743 m (39.2743 mm) differ by a "
         "factor of 204. Check the unit of the bound");
     ck_assert_int_eq(count_of(said.err, "warning: "), 1);
     HIFDM(0, "run", file_with("c.yaml", formatted(text, "7", "0.02")), "-o", path, "--restart");
-    ERR("warning: requirements.1.at_most: the bound 0.02 N (20 mN) and the value 24.8329 N (24832.9 mN) differ by a");
+    ERR("requirements.1.at_most: the bound 0.02 N (20 mN) and the value 24.8329 N (24832.9 mN) differ by a");
     ck_assert_int_eq(count_of(said.err, "warning: "), 1);
     HIFDM(0, "run", file_with("c.yaml", formatted(text, "7", "0.13")), "-o", path, "--restart");
     ck_assert_str_eq(said.err, "");
