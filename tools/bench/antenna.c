@@ -13,6 +13,7 @@
 #include <string.h>
 
 #define LOSS_MOST_DB 1.0
+#define WARNED_DB 0.1 /* difference of losses that a run reports (RUZE_OFF_DB in run/stages_measure.c) */
 #define N_CASE 30
 #define N_SAMPLE 4
 #define FACET_LOSSES 4 /* frequencies of each net, by the loss of its facets at the target positions */
@@ -182,8 +183,10 @@ void bench_antenna(const char *what, const char *folder)
         memset(b.mean, 0, sizeof b.mean);
         open_net(b.row, folder, &b);
         measure_net(&b);
-        printf("%3d %6d %18d %6.3f %8.3f %14d %6.3f %8.3f\n", b.row, b.problem.facets.n_facet, b.n[0],
-               b.mean[0] / b.n[0], b.worst[0], b.n[1], b.mean[1] / b.n[1], b.worst[1]);
+        bool is_off = fmax(fabs(b.worst[0]), fabs(b.worst[1])) > WARNED_DB;
+        printf("%3d %6d %18d %6.3f %8.3f %14d %6.3f %8.3f%s\n", b.row, b.problem.facets.n_facet, b.n[0],
+               b.mean[0] / b.n[0], b.worst[0], b.n[1], b.mean[1] / b.n[1], b.worst[1],
+               is_off ? "  a run of this shape warns of the difference" : "");
         fflush(stdout);
         close_net(&b);
     }
