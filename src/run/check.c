@@ -303,11 +303,12 @@ static hf_status time_refine(hf_check *c, const hf_evaluator *v, const hf_popula
         hf_status status =
             hf_refine_run(v, ga->lower, ga->upper, o->refine_steps, NULL, &watcher, p->initial, &p->workspace, &r);
         if (status == HF_NO_MEMORY) return status;
-        if ((status != HF_OK && status != HF_INTERRUPTED) || r.iterations == 0) return HF_OK;
-        c->is_refine_tried = status == HF_OK && !c->evolves && !o->n_front;
+        if (r.iterations == 0) return HF_OK;
+        bool has_ended = status != HF_INTERRUPTED; /* also without a feasible design */
+        c->is_refine_tried = has_ended && !c->evolves && !o->n_front;
         step_s = (hf_clock_s() - t.begin_s) / r.iterations;
         int expected = t.n_failed ? STEPS_ROUGH : STEPS_SMOOTH;
-        c->n_step = status == HF_OK || r.iterations > expected ? r.iterations : expected;
+        c->n_step = has_ended || r.iterations > expected ? r.iterations : expected;
     }
     if (c->n_step > o->refine_steps) c->n_step = o->refine_steps;
     c->step_s = step_s;
