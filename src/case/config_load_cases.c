@@ -16,6 +16,7 @@
 
 #define COLUMN_MAX 64
 #define RISE_DOUBT_K 250.0 /* a larger rise of temperature is probably an absolute temperature */
+#define COLDEST_RISE_K (-293.15)
 #define LARGEST_STRAIN 0.1 /* maximum thermal strain; a larger one is an error in the case */
 
 _Static_assert(sizeof hf_part_word / sizeof *hf_part_word == HF_PART_UNIT + HF_N_UNIT + 1, "a part for each unit");
@@ -148,12 +149,12 @@ static hf_status heat(const maker *q, int row)
     const hf_load_case_settings *s = &q->c->built.load_case[row];
     bool of_net = *s->set || s->part == HF_PART_ALL || s->part == HF_PART_NET;
     if (isnan(s->temperature_K) && isnan(s->gradient_K_per_m[0])) return HF_OK;
-    if (s->temperature_K > RISE_DOUBT_K) {
+    if (s->temperature_K > RISE_DOUBT_K || s->temperature_K < COLDEST_RISE_K) {
         char where[HF_LOCATION_SIZE];
-        hf_warning(q->messages,
-                   "%s: %g K is the rise from the temperature at which the cables were cut. If it is an absolute "
-                   "temperature, subtract that temperature",
-                   hf_config_place(q->c, where, "load_cases.%d.temperature_K", row), s->temperature_K);
+        hf_warning(q->messages, "%s: %g K is the rise from the temperature at which the cables were cut. %s",
+                   hf_config_place(q->c, where, "load_cases.%d.temperature_K", row), s->temperature_K,
+                   s->temperature_K > 0 ? "If it is an absolute temperature, subtract that temperature"
+                                        : "Cables cut at 20 degC would be below absolute zero");
     }
     if (of_net) HF_TRY(heat_cables(q, row));
     return *s->set || s->part == HF_PART_NET ? HF_OK : heat_truss(q, row);

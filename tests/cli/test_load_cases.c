@@ -196,6 +196,10 @@ START_TEST(a_net_that_hangs_loose_has_no_surface)
     const char *out = temp("loose.h5");
     HIFDM(0, "check", EXAMPLE, "--set", "load_cases.0.temperature_K=293");
     ERR("load_cases.0.temperature_K: 293 K is the rise from the temperature at which the cables were cut.");
+    HIFDM(0, "check", EXAMPLE, "--set", "load_cases.0.temperature_K=-400");
+    ERR("load_cases.0.temperature_K: -400 K is the rise from the temperature at which the cables were cut. Cables cut "
+        "at "
+        "20 degC would be below absolute zero\n");
     HIFDM(0, "check", EXAMPLE, "--set", "load_cases.0.temperature_K=200");
     ck_assert_ptr_null(strstr(said.err, " is the rise from "));
     HIFDM(0, "run", EXAMPLE, "-o", out, "--set", "load_cases.0.temperature_K=-600", "--set",
