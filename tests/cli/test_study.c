@@ -375,7 +375,8 @@ START_TEST(check_says_what_a_sweep_would_do)
     OUT(": form.pretension_N=5, scene.EA_boundary_N=100000\n");
     OUT(": form.pretension_N=40, scene.EA_boundary_N=200000\n");
     OUT("0 done, 0 failed, 0 running, 18 to run");
-    OUT("18 points to run, each like this one at most some ");
+    OUT("18 points to run, each at most some ");
+    OUT(" on average, on ");
     OUT("the first point, ");
     SHELL(0, "cd \"$1\" && ls && test ! -e s.d", temp("")); /* nothing is written */
     SHELL(0, "cd \"$1\" && \"$0\" sweep s.yaml --quiet && \"$0\" check s.yaml", temp(""));
@@ -394,18 +395,18 @@ START_TEST(check_counts_threads_that_have_a_point)
     HIFDM(0, "check", path, "--threads", "64");
     const char *line = strstr(said.out, "2 points to run, each");
     ck_assert_msg(line && sscanf(line,
-                                 "2 points to run, each like this one at most some %31[^,], on 2 threads: at most "
+                                 "2 points to run, each at most some %31[^o]on average, on 2 threads: at most "
                                  "about %31[^\n]",
                                  one, all) == 2,
                   "%s", said.out);
-    ck_assert_str_eq(one, all);
+    ck_assert_str_eq(one, formatted("%s ", all));
     /* three points on two threads: two rounds; durations are printed as "1.2 ms" */
     HIFDM(0, "check", file_with("s.yaml", NET "sweep:\n  form.pretension_N: [5, 6, 7]\n"), "--threads", "2");
     double one_is, all_is;
     char one_unit[8], all_unit[8];
     line = strstr(said.out, "3 points to run, each");
     ck_assert_msg(line && sscanf(line,
-                                 "3 points to run, each like this one at most some %lf %7[^,], on 2 threads: at most "
+                                 "3 points to run, each at most some %lf %7s on average, on 2 threads: at most "
                                  "about %lf %7s",
                                  &one_is, one_unit, &all_is, all_unit) == 4,
                   "%s", said.out);
@@ -424,19 +425,19 @@ START_TEST(check_tells_what_is_not_done)
     SHELL(3, "cd \"$1\" && \"$0\" sweep s.yaml --quiet", temp(""));
     SHELL(0, "cd \"$1\" && \"$0\" check s.yaml --threads 2", temp(""));
     OUT("2 done, 2 failed, 0 running, 0 to run");
-    OUT("nothing is missing; 2 failed: `hifdm sweep s.yaml --retry failed`\n2 points to run anew, each like this one ");
+    OUT("nothing is missing; 2 failed: `hifdm sweep s.yaml --retry failed`\n2 points to run anew, each at most some ");
     ck_assert_ptr_null(strstr(said.out, "all points have been run"));
     file_with("s.yaml",
               "base: base.yaml\nsweep:\n  form.max_iterations: [100000, 2]\n  form.pretension_N: [8, 9, 10]\n");
     SHELL(0, "cd \"$1\" && \"$0\" check s.yaml --threads 2", temp(""));
-    OUT("2 points to run, each like this one ");
+    OUT("2 points to run, each at most some ");
     OUT("\n2 failed: `hifdm sweep s.yaml --retry missing,failed` runs these, too\n");
     /* another base case: what was run before is of the old one */
     file_with("s.yaml", study);
     file_with("base.yaml", formatted("title: other\n%s", base));
     SHELL(0, "cd \"$1\" && \"$0\" check s.yaml --threads 2", temp(""));
     OUT("4 outdated: of another version of base.yaml\n");
-    OUT("nothing is missing; 4 outdated: `hifdm sweep s.yaml --retry outdated`\n4 points to run anew, each like ");
+    OUT("nothing is missing; 4 outdated: `hifdm sweep s.yaml --retry outdated`\n4 points to run anew, each at most ");
     SHELL(3, "cd \"$1\" && \"$0\" sweep s.yaml --retry outdated --quiet", temp("")); /* that command does it */
     SHELL(0, "cd \"$1\" && \"$0\" check s.yaml", temp(""));
     OUT("nothing is missing; 2 failed: ");
