@@ -158,9 +158,9 @@ static const struct {
     {NET "load_cases:\n  - {name: a, temperature_K: 1}\n", "",
      "error: c.yaml:6:30: load_cases.0.temperature_K: 163 cables have no thermal expansion coefficient, such as cable "
      "'f0_0-f1_0'. In the list `cables`, give expansion_per_K for these cables (0 for cables that do not expand)\n"},
-    {NET "cables:\n  - {expansion_per_K: 1e-3}\nload_cases:\n  - {name: a, temperature_K: -2000}\n", "",
+    {NET "cables:\n  - {expansion_per_K: 1e-2}\nload_cases:\n  - {name: a, temperature_K: -200}\n", "",
      "error: c.yaml:8:30: load_cases.0.temperature_K: the lengths of 163 cables would change by more than the fraction "
-     "0.1. For example, the length of cable 'f0_0-f1_0' would change by the fraction -2 at -2000 K. Check this "
+     "0.1. For example, the length of cable 'f0_0-f1_0' would change by the fraction -2 at -200 K. Check this "
      "temperature and the value expansion_per_K\n"},
     {NET "cables:\n  - {set: front, mass_kg_per_m: 1}\nload_cases:\n  - {name: a, gravity_m_per_s2: 1}\n", "",
      "error: c.yaml:8:33: load_cases.0.gravity_m_per_s2: 121 cables have no mass per length, such as cable "
