@@ -57,8 +57,7 @@ typedef void hf_objectives_take(void *context, int i_net, const hf_workspace *sh
 typedef struct hf_objectives_nets {
     int n_load_case, n_sample; /* number of load cases and number of samples */
     /* Load cases in which the samples exist. Net n_load_case + s n_sample + i is sample i in state s. State 0 is the
-     * nominal load case. State s > 0 is the load case with this index. If all load cases are present, they are in
-     * order. */
+     * nominal load case, and state s > 0 is load case sample_load_case[s]. They are in ascending order. */
     int n_sample_state;
     int sample_load_case[1 + HF_LOAD_CASES_MAX]; /* [n_sample_state] */
     const char *const *load_case_name;           /* [n_load_case] names of the load cases */
@@ -82,6 +81,7 @@ typedef struct hf_objectives_nets {
      * The array by_net [n] points to arrays that `room` owns. */
     void (*follow)(void *room, int n, const hf_objectives_rate *by_design, hf_objectives_rate *by_net);
 } hf_objectives_nets;
+/* Returns the number of all nets. */
 static inline int hf_objectives_nets_count(const hf_objectives_nets *nets)
 {
     return nets->n_load_case + nets->n_sample_state * nets->n_sample;
@@ -146,6 +146,7 @@ typedef struct hf_objectives_point {
     /* [n_objective][number of nets] norm divided by the smooth maximum, or weight in the mean of the worst samples */
     double *net_part;
     double *net_order;                    /* [2 n_sample] scratch */
+    struct hf_ranked *net_ranked;         /* [n_sample] scratch */
     void *constraints;                    /* scratch of the constraints; NULL without constraints */
     void (*free_constraints)(void *room); /* frees `constraints` */
     double *constraint;                   /* [constraints->n] distances of the design that was judged last */

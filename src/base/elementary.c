@@ -3,6 +3,8 @@
 #include "base/elementary.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* ---- comparisons ---- */
 
@@ -30,6 +32,29 @@ int hf_list_largest(int i, const double *value, int n_max, int n, int *list)
 }
 
 /* ---- lengths ---- */
+
+int hf_compare_down(const void *a, const void *b)
+{
+    const hf_ranked *x = a, *y = b;
+    int by_value = hf_compare_doubles(&y->value, &x->value);
+    return by_value ? by_value : x->index - y->index;
+}
+
+double hf_tail_mean(int n, const double *value, double tail, hf_ranked *ranked, double *weight)
+{
+    double sum = 0, left = tail;
+    for (int i = 0; i < n; i++)
+        ranked[i] = (hf_ranked){value[i], i};
+    qsort(ranked, (size_t)n, sizeof *ranked, hf_compare_down);
+    memset(weight, 0, (size_t)n * sizeof *weight);
+    for (int rank = 0; rank < n && left > 0; rank++) {
+        double part = fmin(1, left) / tail;
+        weight[ranked[rank].index] = part;
+        sum += part * ranked[rank].value;
+        left -= 1;
+    }
+    return sum;
+}
 
 double hf_norm(double x, double y, double z)
 {

@@ -22,6 +22,19 @@ double hf_max_magnitude(size_t n, const double *value);
  * list, at most n_max. An item with the same value as others goes behind them. Returns the new number of items. */
 int hf_list_largest(int i, const double *value, int n_max, int n, int *list);
 
+/* A value with its index. hf_compare_down orders the largest value first, and equal ones by their indices, for
+ * qsort(3). */
+typedef struct hf_ranked {
+    double value;
+    int index;
+} hf_ranked;
+int hf_compare_down(const void *a, const void *b);
+
+/* Returns the mean of the largest `tail` of n values, a real number of them, at least 1 (CVaR: Rockafellar and Uryasev,
+ * Journal of Risk 2, 2000). weight [n] becomes the weight of each value in the mean, its derivative. ranked [n] is
+ * scratch. */
+double hf_tail_mean(int n, const double *value, double tail, hf_ranked *ranked, double *weight);
+
 /* Returns sqrt(x^2 + y^2 + z^2) without overflow or underflow. The error is below 2 units in the last place. The result
  * is infinite if a component is infinite, else NaN if a component is NaN. */
 double hf_norm(double x, double y, double z);

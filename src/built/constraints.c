@@ -19,11 +19,6 @@ typedef struct {
     double item, weight; /* weight: derivative of the constraint by the figure */
 } term;
 
-typedef struct {
-    double distance;
-    int sample;
-} ranked;
-
 /* Working memory of a thread. */
 typedef struct {
     const hf_built_constraints *c;
@@ -45,7 +40,7 @@ typedef struct {
     double *distance; /* [n][n_sample] of each sample, or in the first entry that of the design in its load case */
     int *worst_state; /* [n][n_sample] load case of this distance */
     double *weight;   /* [n][n_sample] derivative of each constraint by these distances */
-    ranked *order;    /* [n_sample] scratch */
+    hf_ranked *order; /* [n_sample] scratch */
     term *list;       /* [n] scratch */
     double *move_m, *tension_rate; /* [HF_OBJECTIVES_AT_ONCE][3][n_node], [...][n_cable] */
     hf_arena arena;
@@ -91,14 +86,6 @@ static size_t place_of(const hf_built_constraints *c, int k, int i_sample)
 static bool is_of_surface(const hf_required_column *c)
 {
     return hf_required_is_of(c->figure, HF_REQUIRED_OF_SURFACE);
-}
-
-/* Orders the largest distance first, and equal ones by their samples. */
-static int compare_down(const void *a, const void *b)
-{
-    const ranked *x = a, *y = b;
-    int by_distance = hf_compare_doubles(&y->distance, &x->distance);
-    return by_distance ? by_distance : x->sample - y->sample;
 }
 
 /* Returns the tension of the set of which the row allows `most` cables to be slack: the most + 1 st one from below.
@@ -199,8 +186,7 @@ static double scale_of(const hf_built_constraints *c, int k, bool is_high)
 {
     const hf_required *q = c->required;
     const hf_requirement_settings *row = &q->row[c->row[k]];
-    bool has_two = fabs(row->at_least) > 0 && fabs(row->at_most) > 0; /* NaN: no bound */
-    if (!is_over_samples(c, k) || !has_two) return 1;
+    if (!is_over_samples(c, k) || !hf_required_has_two_bounds(row)) return 1;
     int column = is_high ? q->high[c->row[k]] : q->low[c->row[k]];
     return column < 0 ? 1 : c->unit[k] / unit_of(&q->column[column], is_high ? row->at_most : row->at_least, c->model);
 }
@@ -258,24 +244,12 @@ static void measure_net(void *context, int i_net, const hf_workspace *shape)
 static double gather(constraints_room *r, int k)
 {
     const hf_built_constraints *c = r->c;
-    double *distance = r->distance + place_of(c, k, 0), *weight = r->weight + place_of(c, k, 0), sum = 0;
+    const double *distance = r->distance + place_of(c, k, 0);
     int n = c->nets->as.n_sample;
     double tail = (1 - c->required->row[c->row[k]].share) * n;
-    for (int i = 0; i < n; i++)
-        r->order[i] = (ranked){distance[i], i};
-    qsort(r->order, (size_t)n, sizeof *r->order, compare_down);
+    double mean = hf_tail_mean(n, distance, fmax(1, tail), r->order, r->weight + place_of(c, k, 0));
     int whole = (int)floor(tail * (1 + 1e-12));
-    memset(weight, 0, (size_t)n * sizeof *weight);
-    if (!r->is_smooth) return r->order[whole < n ? whole : n - 1].distance;
-    if (tail < 1) tail = 1; /* fewer samples than the tail needs: the worst one */
-    double left = tail;
-    for (int rank = 0; rank < n && left > 0; rank++) {
-        double part = fmin(1, left) / tail;
-        weight[r->order[rank].sample] = part;
-        sum += part * r->order[rank].distance;
-        left -= 1;
-    }
-    return sum;
+    return r->is_smooth ? mean : r->order[whole < n ? whole : n - 1].value;
 }
 
 static hf_status measure_design(void *room, const hf_workspace *w, bool is_smooth, double *value)

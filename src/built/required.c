@@ -414,10 +414,15 @@ static double margin_of(const hf_requirement_settings *r, bool is_high, double v
     return isnan(margin) ? -(double)INFINITY : margin;
 }
 
+bool hf_required_has_two_bounds(const hf_requirement_settings *r)
+{
+    return isfinite(r->at_least * r->at_most) && r->at_least * r->at_most != 0;
+}
+
 double hf_required_distance(const hf_requirement_settings *r, bool is_high, double value)
 {
-    bool is_relative = isfinite(r->at_least * r->at_most) && r->at_least * r->at_most != 0;
-    return margin_of(r, is_high, value) / (is_relative ? fabs(is_high ? r->at_most : r->at_least) : 1);
+    double bound = is_high ? r->at_most : r->at_least;
+    return margin_of(r, is_high, value) / (hf_required_has_two_bounds(r) ? fabs(bound) : 1);
 }
 
 double hf_required_margin(const hf_required *q, int i, const double *value, size_t stride, int *state, int *column)

@@ -99,9 +99,12 @@ void hf_required_measure(const hf_required *required, bool is_many, int state, c
 void hf_required_bound_errors(const hf_required *required, int state, const hf_required_shape *shape, double bound_m,
                               const double *value, double *error);
 
+/* Returns whether a row has two bounds other than 0. Its distances are then relative to the bounds, because the nearer
+ * one must be found. */
+bool hf_required_has_two_bounds(const hf_requirement_settings *row);
+
 /* Returns the distance of a value from one bound of a row, which the row must have; it is negative outside. It is
- * relative to the bound if the row has two bounds other than 0, because the nearer one must be found. -INFINITY: no
- * value. */
+ * relative to the bound if hf_required_has_two_bounds. -INFINITY: no value. */
 double hf_required_distance(const hf_requirement_settings *row, bool is_high, double value);
 
 /* Returns the smallest distance of row i from its bounds over its load cases, as hf_required_distance. The values of

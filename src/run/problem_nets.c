@@ -179,7 +179,7 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
     char name[256];
     int worst = -1, n_missed = 0;
     bool is_missed[HF_REQUIREMENT_ROWS_MAX] = {false};
-    char others[48] = "", of_samples[32] = "";
+    char others[48] = "";
     *text = '\0';
     for (int k = 0; c && k < c->n; k++) {
         double beyond = p->point.constraint[k] / c->unit[k];
@@ -200,15 +200,16 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
                  hf_requirement_name(r, name, sizeof name), others);
         return text;
     }
-    double amount = p->point.constraint[worst];
-    bool is_length = !strcmp(unit, "m"), is_relative = r->at_least != 0 && r->at_most != 0 && !isnan(r->share) &&
-                                                       !isnan(r->at_least) && !isnan(r->at_most);
-    if (!isnan(r->share)) strcpy(of_samples, " in samples of the search");
-    if (is_relative) amount *= 100 / c->unit[worst];
-    if (is_relative || is_length) unit = is_relative ? "%" : "mm";
+    bool is_over_samples = !isnan(r->share), is_length = !strcmp(unit, "m");
+    double times = is_length ? 1e3 : 1;
+    if (is_length) unit = "mm";
+    if (is_over_samples && hf_required_has_two_bounds(r)) {
+        times = 100 / c->unit[worst];
+        unit = "%";
+    }
     snprintf(text, size, ": bound of requirements.%d (%.160s) is missed by %.3g%s%s%s%s", row,
-             hf_requirement_name(r, name, sizeof name), amount * (is_length && !is_relative ? 1e3 : 1),
-             *unit ? " " : "", unit, of_samples, others);
+             hf_requirement_name(r, name, sizeof name), times * p->point.constraint[worst], *unit ? " " : "", unit,
+             is_over_samples ? " in samples of the search" : "", others);
     return text;
 }
 

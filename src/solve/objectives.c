@@ -81,7 +81,9 @@ static void lay_out_point(hf_arena *a, const hf_objectives *objectives, hf_objec
     p->net_value = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_norm = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
     p->net_part = hf_arena_take(a, (size_t)objectives->n_objective * n_net, sizeof(double));
-    p->net_order = hf_arena_take(a, objectives->nets ? 2 * (size_t)objectives->nets->n_sample : 0, sizeof(double));
+    size_t n_sample = objectives->nets ? (size_t)objectives->nets->n_sample : 0;
+    p->net_order = hf_arena_take(a, 2 * n_sample, sizeof(double));
+    p->net_ranked = hf_arena_take(a, n_sample, sizeof *p->net_ranked);
     p->constraint = hf_arena_take(a, objectives->constraints ? (size_t)objectives->constraints->n : 0, sizeof(double));
     p->cloud = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->cloud);
     p->gain = hf_arena_take(a, (size_t)objectives->n_objective, sizeof *p->gain);
@@ -376,19 +378,6 @@ static double quantile_of(int n, const double *value, double part, double *order
     return order[rank > 0 ? rank - 1 : 0];
 }
 
-/* Multiplies the residuals f of each net by (S/P)^7 and returns their norm P. S is the norm of a net and P the smooth
- * maximum of all S. part [n_net] becomes S/P. */
-static double scale_worst(const hf_objective *g, const double *norm, double *part, double *f)
-{
-    double smooth;
-    memcpy(part, norm, (size_t)g->n_net * sizeof *part);
-    smooth_maximum(g->n_net, part, &smooth);
-    for (int s = 0; s < g->n_net; s++)
-        for (int i = 0; i < g->n_shape_row; i++)
-            f[s * g->n_shape_row + i] *= seventh(part[s]);
-    return smooth;
-}
-
 /* Writes the largest value of each sample over its load cases, worst [n_sample], from value [n_net]. */
 static void find_worst(const hf_objective *g, int n_sample, const double *value, double *worst)
 {
@@ -397,39 +386,35 @@ static void find_worst(const hf_objective *g, int n_sample, const double *value,
         worst[s % n_sample] = fmax(worst[s % n_sample], value[s]);
 }
 
-/* Returns the mean of the worst samples, which are the share 1 - quantile of all (CVaR: Rockafellar and Uryasev, 2000),
- * but at least one. part [n_net] becomes the weight of each net in this mean; a sample counts in the load case in which
- * it is worst. order [2 n_sample] is scratch. */
-static double mean_of_worst(const hf_objective *g, int n_sample, const double *norm, double *part, double *order)
+/* Returns the mean of the samples beyond the quantile, at least of one. part [n_net] becomes the weight of each net in
+ * this mean; a sample counts in the load case in which it is worst. worst [2 n_sample] has the norms of the
+ * samples, then scratch. */
+static double mean_of_worst(const hf_objective *g, hf_objectives_point *p, int n_sample, const double *norm,
+                            double *worst, double *part)
 {
-    double size = fmax(1, (1 - g->settings.quantile) * n_sample), mean = 0, *sorted = order + n_sample;
-    int whole = (int)floor(size * (1 + 1e-12)), n_above = 0, n_at = 0;
-    find_worst(g, n_sample, norm, order);
-    memcpy(sorted, order, (size_t)n_sample * sizeof *sorted);
-    qsort(sorted, (size_t)n_sample, sizeof *sorted, hf_compare_doubles);
-    double last =
-        sorted[n_sample - 1 - (whole < n_sample ? whole : n_sample - 1)]; /* the first one not counted whole */
-    for (int i = 0; i < n_sample; i++) {
-        n_above += order[i] > last;
-        n_at += order[i] == last;
-    }
+    double *weight = worst + n_sample, tail = fmax(1, (1 - g->settings.quantile) * n_sample);
+    double mean = hf_tail_mean(n_sample, worst, tail, p->net_ranked, weight);
     for (int s = 0; s < g->n_net; s++) {
-        double *worst = &order[s % n_sample];
-        part[s] = 0;
-        if (!(norm[s] >= *worst)) continue;
-        part[s] = (*worst > last ? 1 : *worst == last ? fmax(0, size - n_above) / n_at : 0) / size;
-        if (part[s] > 0) mean += part[s] * norm[s];
-        *worst = INFINITY; /* the sample has been counted */
+        bool is_worst = norm[s] >= worst[s % n_sample];
+        part[s] = is_worst ? weight[s % n_sample] : 0;
+        if (is_worst) weight[s % n_sample] = 0; /* the sample has been counted */
     }
     return mean;
 }
 
-/* Multiplies the residuals f of each net by sqrt(w C/S), so that their norm is C, the sum of w S. part [n_net] has
- * w. */
-static void scale_tail(const hf_objective *g, const double *norm, const double *part, double mean, double *f)
+/* Returns the factor of the residuals of a net that make up an objective of the norm `combined`: (S/P)^7 for a smooth
+ * maximum P, sqrt(w C/S) for a mean of the worst samples C. S is the norm of the net, and part is S/P or w. */
+static double factor_of(const hf_objective *g, double norm, double part, double combined)
+{
+    if (!g->takes_tail) return seventh(part);
+    return norm > 0 ? sqrt(part * combined / norm) : 0;
+}
+
+/* Multiplies the residuals f of each net by its factor. */
+static void scale_nets(const hf_objective *g, const double *norm, const double *part, double combined, double *f)
 {
     for (int s = 0; s < g->n_net; s++) {
-        double factor = norm[s] > 0 ? sqrt(part[s] * mean / norm[s]) : 0;
+        double factor = factor_of(g, norm[s], part[s], combined);
         for (int i = 0; i < g->n_shape_row; i++)
             f[s * g->n_shape_row + i] *= factor;
     }
@@ -454,12 +439,13 @@ static void gather_nets(const hf_objectives *objectives, int k, hf_objectives_po
         find_worst(g, n_sample, of_net, worst);
         *value = quantile_of(n_sample, worst, g->settings.quantile, scratch);
         find_worst(g, n_sample, norm_of_net, worst);
-        *norm = quantile_of(n_sample, worst, g->settings.quantile, scratch);
-        if (!g->takes_tail) return;
-        *norm = mean_of_worst(g, n_sample, norm_of_net, part, worst);
-        if (isfinite(*norm)) scale_tail(g, norm_of_net, part, *norm, f);
+        *norm = g->takes_tail ? mean_of_worst(g, p, n_sample, norm_of_net, worst, part)
+                              : quantile_of(n_sample, worst, g->settings.quantile, scratch);
+        if (g->takes_tail && isfinite(*norm)) scale_nets(g, norm_of_net, part, *norm, f);
     } else if (isfinite(*norm) && g->settings.take == HF_TAKE_WORST) {
-        *norm = scale_worst(g, norm_of_net, part, f);
+        memcpy(part, norm_of_net, n * sizeof *part);
+        smooth_maximum(g->n_net, part, norm);
+        scale_nets(g, norm_of_net, part, *norm, f);
     } else if (isfinite(*norm)) {
         *value = sqrt(hf_dot(n, of_net, of_net) / g->n_net);
         *norm = sqrt(hf_dot(n, norm_of_net, norm_of_net) / g->n_net);
@@ -666,52 +652,34 @@ void hf_objectives_nets_push(const hf_objectives *objectives, int i_net, const h
             push_shape(objectives, k, shape, p, by, rate + row_of_net(&objectives->objective[k], i_net));
 }
 
-/* Replaces rate, the changes dg of the residuals g of each net alone, by the changes of f = weight (S/P)^7 g, the
- * residuals of the objective. They are df = weight (S/P)^7 dg + 7 f (dS/S - dP/P) with dP = sum (S/P)^15 dS. dS is the
- * component of dg along g. norm [n_net] has S and part [n_net] has S/P. */
-static void close_worst(const hf_objective *g, const double *norm, const double *part, const double *f, double *rate)
+/* Replaces rate, the changes dg of the residuals g of each net alone, by the changes of f = weight a g, the residuals
+ * of the objective, with a of factor_of. dS is the component of dg along g.
+ *
+ *     smooth maximum         df = weight a dg + 7 f (dS/S - dP/P),    dP = sum of (S/P)^15 dS
+ *     mean of the worst      df = weight a dg - f/2 (dS/S - dC/C),    dC = sum of w dS
+ *
+ * norm [n_net] has S, and part [n_net] has S/P or w. */
+static void close_nets(const hf_objective *g, const double *norm, const double *part, const double *f, double *rate)
 {
-    double smooth = 0, smooth_rate = 0;
+    double combined = 0, combined_rate = 0, power = g->takes_tail ? -0.5 : 7;
     size_t n = (size_t)g->n_shape_row;
-    for (int s = 0; s < g->n_net; s++)
-        if (norm[s] > 0) smooth = fmax(smooth, norm[s] / part[s]);
+    for (int s = 0; s < g->n_net; s++) {
+        if (g->takes_tail && part[s] > 0) combined += part[s] * norm[s];
+        if (!g->takes_tail && norm[s] > 0) combined = fmax(combined, norm[s] / part[s]);
+    }
     for (int pass = 0; pass < 2; pass++)
         for (int s = 0; s < g->n_net; s++) {
             const double *of_net = f + (size_t)s * n;
             double *by_net = rate + (size_t)s * n, length = sqrt(hf_dot(n, of_net, of_net));
-            double share = seventh(part[s]), turn = 0;
+            double factor = factor_of(g, norm[s], part[s], combined), turn = 0;
             double norm_rate = length > 0 ? hf_dot(n, of_net, by_net) / length : 0;
             if (pass == 0) {
-                smooth_rate += share * share * part[s] * norm_rate;
+                combined_rate += (g->takes_tail ? part[s] : factor * factor * part[s]) * norm_rate;
                 continue;
             }
-            if (length > 0) turn = 7 * (norm_rate / norm[s] - smooth_rate / smooth);
+            if (length > 0) turn = power * (norm_rate / norm[s] - combined_rate / combined);
             for (size_t i = 0; i < n; i++)
-                by_net[i] = g->settings.weight * share * by_net[i] + turn * of_net[i];
-        }
-}
-
-/* Replaces rate, the changes dg of the residuals g of each net alone, by the changes of f = weight sqrt(w C/S) g, the
- * residuals of the objective: df = weight sqrt(w C/S) dg + f/2 (dC/C - dS/S) with dC = sum of w dS. */
-static void close_tail(const hf_objective *g, const double *norm, const double *part, const double *f, double *rate)
-{
-    double mean = 0, mean_rate = 0;
-    size_t n = (size_t)g->n_shape_row;
-    for (int s = 0; s < g->n_net; s++)
-        if (part[s] > 0) mean += part[s] * norm[s];
-    for (int pass = 0; pass < 2; pass++)
-        for (int s = 0; s < g->n_net; s++) {
-            const double *of_net = f + (size_t)s * n;
-            double *by_net = rate + (size_t)s * n, length = sqrt(hf_dot(n, of_net, of_net));
-            double norm_rate = length > 0 ? hf_dot(n, of_net, by_net) / length : 0;
-            if (pass == 0) {
-                mean_rate += part[s] * norm_rate;
-                continue;
-            }
-            double factor = length > 0 ? g->settings.weight * sqrt(part[s] * mean / norm[s]) : 0;
-            double turn = length > 0 ? (mean_rate / mean - norm_rate / norm[s]) / 2 : 0;
-            for (size_t i = 0; i < n; i++)
-                by_net[i] = factor * by_net[i] + turn * of_net[i];
+                by_net[i] = g->settings.weight * factor * by_net[i] + turn * of_net[i];
         }
 }
 
@@ -722,13 +690,9 @@ void hf_objectives_nets_close(const hf_objectives *objectives, const hf_objectiv
         const hf_objective *g = &objectives->objective[k];
         double *of_objective = rate + g->first_row;
         if (g->n_net == 0) continue;
-        size_t at = place_of_net(objectives, k, g->first_net);
-        if (g->takes_tail && g->n_net > 1) {
-            close_tail(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_objective);
-            continue;
-        }
-        if (g->settings.take == HF_TAKE_WORST && g->n_net > 1) {
-            close_worst(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_objective);
+        if (g->n_net > 1 && (g->takes_tail || g->settings.take == HF_TAKE_WORST)) {
+            size_t at = place_of_net(objectives, k, g->first_net);
+            close_nets(g, p->net_norm + at, p->net_part + at, residual + g->first_row, of_objective);
             continue;
         }
         for (int i = 0; i < g->n_row; i++)

@@ -279,15 +279,20 @@ START_TEST(values_of_load_cases_are_those_of_cases)
 }
 END_TEST
 
+static void forget_errors(hf_problem *p)
+{
+    hf_tolerance_settings *t = &p->settings.tolerance;
+    t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
+    t->n_truss = 0;
+}
+
 /* Without errors, and in states in which nothing is different, every net is the design. */
 START_TEST(nets_that_do_not_differ_are_the_design)
 {
     hf_problem p;
     hf_form_result r;
     open_problem(&p, _i, NULL, value_objectives);
-    hf_tolerance_settings *t = &p.settings.tolerance;
-    t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
-    t->n_truss = 0;
+    forget_errors(&p);
     for (int k = 0; k < p.load_cases.n; k++) {
         hf_load_case *s = &p.load_cases.load_case[k];
         memset(s->rise_K, 0, (size_t)p.model.n_cable * sizeof(double));
@@ -315,9 +320,7 @@ START_TEST(samples_in_load_cases_without_errors)
     hf_problem p;
     hf_form_result r;
     open_problem(&p, _i, NULL, sampled_objectives);
-    hf_tolerance_settings *t = &p.settings.tolerance;
-    t->sigma_cut_m = t->sigma_cut_ratio = t->sigma_EA_ratio = t->sigma_support_m = 0;
-    t->n_truss = 0;
+    forget_errors(&p);
     evaluate_base(&p, &r);
     assert_near(r.objective[0], r.objective[4]);
     assert_near(r.objective[1], r.objective[5]);
