@@ -102,7 +102,7 @@ typedef struct {
     hf_location_find *find_location;
     const void *location_context; /* first argument of find_location; borrowed */
     /* callback that receives each line as soon as it is complete, with its '\n'; NULL: none */
-    void (*tell)(const char *line);
+    void (*report)(const char *line);
 } hf_messages;
 
 #define HF_LOCATION_SIZE 1280 /* size for a path, a line, a column and a key */

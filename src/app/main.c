@@ -36,11 +36,10 @@ static void keep_exit_status(void)
 
 /* Prints a message at once: a warning about the case comes before hours of computation. On a terminal, it replaces the
  * line of the progress. */
-static void tell(const char *line)
+static void print_message(const char *line)
 {
-    static const char clear[] = "\r\033[K";
     size_t n = strcspn(line, "\n") + 1, word = strcspn(line, ":\n");
-    if (isatty(STDERR_FILENO)) hf_output_write(STDERR_FILENO, clear, sizeof clear - 1);
+    if (isatty(STDERR_FILENO)) hf_output_write(STDERR_FILENO, HF_OUTPUT_CLEAR_LINE, strlen(HF_OUTPUT_CLEAR_LINE));
     if (hf_output_has_colour(STDERR_FILENO)) {
         const char *colour = !strncmp(line, "error:", 6) ? HF_PRINT_RED : HF_PRINT_YELLOW;
         hf_output_write(STDERR_FILENO, colour, strlen(colour));
@@ -53,11 +52,11 @@ static void tell(const char *line)
 }
 
 /* Prints the messages so far, and from now on each one at once. */
-static void tell_from_now(hf_messages *messages)
+static void print_from_now(hf_messages *messages)
 {
     for (const char *line = messages->text; line && *line; line += strcspn(line, "\n") + 1)
-        tell(line);
-    messages->tell = tell;
+        print_message(line);
+    messages->report = print_message;
 }
 
 /* Prints the words of these messages, and of a status about the net, that `hifdm explain` can explain. */
@@ -102,14 +101,14 @@ int main(int argc, char **argv)
     int exit_status;
     signal(SIGCHLD, SIG_DFL); /* if a launcher ignores it, the end of a child cannot be read */
     if (status == HF_OK && options.command->reads_results && hf_reader_watch(&options, &exit_status, &messages)) {
-        tell_from_now(&messages);
+        print_from_now(&messages);
         say(&messages, status);
         hf_messages_free(&messages);
         hf_options_free(&options);
         return exit_status;
     }
     if (uses_threads) hf_batch_wait_quietly(argv); /* may start the program again, so it comes before the libraries */
-    tell_from_now(&messages);
+    print_from_now(&messages);
     signal(SIGXFSZ, SIG_IGN); /* writing beyond the limit on file size then fails with an error */
     gsl_set_error_handler_off();
     atexit(keep_exit_status);

@@ -5,6 +5,8 @@
 #include "app/options.h"
 #include <hifdm/problem.h>
 
+#define HF_OUTPUT_CLEAR_LINE "\r\033[K" /* clears the line of a terminal on which the progress is */
+
 /* Checks the name of an output before the work begins; `path` may be NULL. Refuses a file that exists unless
  * options->force, that is an input (`table`, options->result, or one of the case), or that cannot be written. Returns
  * HF_OK, HF_EXISTS or HF_IO. */

@@ -2,14 +2,13 @@
  * interface. */
 #include "app/progress.h"
 
+#include "app/output.h"
 #include "base/file_io.h"
 #include "base/json.h"
 #include "out/print.h"
 
 #include <math.h>
 #include <unistd.h>
-
-#define CLEAR_LINE "\r\033[K"
 
 const char *const hf_progress_word[6] = {"auto", "none", "line", "log", "jsonl", NULL};
 /* The time in s between two lines, for each hf_progress_mode. */
@@ -138,7 +137,7 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
                                                     : steps                      ? show_step
                                                                                  : show_generation;
     p->is_shown = p->mode == HF_PROGRESS_LINE;
-    if (p->is_shown) fputs(CLEAR_LINE, p->file);
+    if (p->is_shown) fputs(HF_OUTPUT_CLEAR_LINE, p->file);
     show(p->file, now);
     if (!p->is_shown) fputc('\n', p->file);
     fflush(p->file);
@@ -147,7 +146,7 @@ void hf_progress_show(void *progress, const hf_run_progress *now)
 void hf_progress_end(hf_progress *p)
 {
     if (!p->is_shown || !hf_file_io_await_room(fileno(p->file), 0)) return;
-    fputs(CLEAR_LINE, p->file);
+    fputs(HF_OUTPUT_CLEAR_LINE, p->file);
     fflush(p->file);
     p->is_shown = false;
 }

@@ -89,7 +89,7 @@ static void append(hf_messages *m, const char *prefix, const char *format, va_li
     m->length = begin + n_shown;
     m->text[m->length++] = '\n';
     m->text[m->length] = '\0';
-    if (m->tell) m->tell(m->text + start);
+    if (m->report) m->report(m->text + start);
 }
 
 hf_status hf_error(hf_messages *messages, hf_status code, const char *format, ...)

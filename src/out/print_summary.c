@@ -28,8 +28,7 @@ static bool has_merit(const hf_summary *s)
     return s->objectives.n > 0 && !s->objectives.is_front;
 }
 
-/* Returns the index of the highest frequency with a loss by physical optics, or -1. */
-static int highest_with_optics(const hf_summary *s, const hf_surface_measures *m)
+int hf_print_highest_optics(const hf_summary *s, const hf_surface_measures *m)
 {
     const hf_double_list *at = &s->surface.frequencies_Hz;
     int highest = -1;
@@ -55,7 +54,7 @@ static void print_frequency(const hf_summary *s, hf_stage stage, double psi_m, F
     const hf_surface_measures *m = &s->stage[stage].surface;
     bool has_facets = m->is_measured && m->n_facet > 0 && isfinite(m->facet_half_path_rms_m);
     hf_surface_errors e = {.half_path_rms_m = psi_m, .fit_half_path_rms_m = (double)NAN};
-    int k = highest_with_optics(s, m);
+    int k = hf_print_highest_optics(s, m);
     if (k >= 0) {
         fprintf(f, "; gain loss at %g GHz %s dB for a refocused feed, %s dB for a fixed feed (physical optics)",
                 s->surface.frequencies_Hz.value[k] / 1e9, optics_text(m->refocused_gain_loss_dB[k], 3).text,
@@ -362,7 +361,7 @@ void hf_print_gain_loss(const hf_summary *s, FILE *f)
         fprintf(f, "%s%g", k ? "/" : "", s->surface.frequencies_Hz.value[k] / 1e9);
     fputs(" GHz: ", f);
     hf_surface_errors e = hf_surface_errors_of(m, m->n_facet > 0);
-    if (highest_with_optics(s, m) >= 0) {
+    if (hf_print_highest_optics(s, m) >= 0) {
         print_both_feeds(s, m, f);
         return;
     }
@@ -381,7 +380,7 @@ static void print_better_fit(const hf_summary *s, hf_stage stage, FILE *f)
     if (stage == HF_STAGE_FORM || s->front || s->stage[HF_STAGE_FORM].result.status != HF_OK || !before->is_measured)
         return;
     bool has_facets = m->n_facet > 0;
-    int k = highest_with_optics(s, m);
+    int k = hf_print_highest_optics(s, m);
     double rms_m = hf_surface_errors_of(m, has_facets).fit_half_path_rms_m,
            before_m = hf_surface_errors_of(before, has_facets).fit_half_path_rms_m;
     double before_Hz = hf_surface_frequency_of_loss_Hz(before_m, HF_SURFACE_GOOD_TO_DB);
@@ -410,7 +409,7 @@ static void print_errors(const hf_summary *s, hf_stage stage, bool is_short, FIL
         fprintf(f, "; of %d facets %s mm, %s mm after best fit", m->n_facet,
                 hf_print_decimals(m->facet_half_path_rms_m * 1e3).text,
                 hf_print_decimals(m->facet_fit_half_path_rms_m * 1e3).text);
-    if (is_short && highest_with_optics(s, m) >= 0) print_beam(s, m, f);
+    if (is_short && hf_print_highest_optics(s, m) >= 0) print_beam(s, m, f);
     fputc('\n', f);
     if (is_short) return;
     if (s->surface.frequencies_Hz.n > 0) {
@@ -589,7 +588,7 @@ static void print_load_cases(const hf_summary *s, FILE *f)
     bool has_loss = has_surface && s->surface.frequencies_Hz.n > 0, has_optics = false;
     if (s->n_load_case == 0) return;
     for (int k = 0; k < s->n_load_case; k++)
-        has_optics |= highest_with_optics(s, &s->load_case[k].surface) >= 0;
+        has_optics |= hf_print_highest_optics(s, &s->load_case[k].surface) >= 0;
     fprintf(f, "  load cases    %-16s %9s %15s%s %8s %9s %5s %5s%s\n", "as-built net", "psi mm", "displacement mm",
             has_loss      ? " refocused     fixed"
             : has_surface ? "  best fit half-path"

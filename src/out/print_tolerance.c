@@ -37,15 +37,6 @@ static bool is_ruze(int measure)
            measure == HF_TOLERANCE_FACET_GAIN_LOSS || measure == HF_TOLERANCE_FACET_FIT_GAIN_LOSS;
 }
 
-static bool has_optics(const hf_summary *s)
-{
-    const hf_surface_measures *m = &s->stage[HF_STAGE_FORM].surface;
-    bool has = false;
-    for (int k = 0; m->is_measured && k < s->surface.frequencies_Hz.n; k++)
-        has |= isfinite(m->refocused_gain_loss_dB[k]) != 0;
-    return has;
-}
-
 static void print_measure(const hf_tolerance_figures *f, int measure, FILE *file)
 {
     const char *unit;
@@ -129,8 +120,9 @@ void hf_print_tolerance(const hf_summary *s, hf_print_amount amount, FILE *f)
         fprintf(f, "in any of %d load cases: %d with slack cables, %d without a shape; ", 1 + t->n_sampled_load_case,
                 t->n_with_slack_in_any, t->n_failed_in_any);
     fprintf(f, "%s\n", hf_print_duration(t->tolerance_wall_s).text);
+    bool has_optics = hf_print_highest_optics(s, &s->stage[HF_STAGE_FORM].surface) >= 0;
     for (int k = 0; amount == HF_PRINT_VERBOSE && k < HF_TOLERANCE_SLACK; k++)
-        if (!is_ruze(k) || !has_optics(s)) print_measure(&t->figure[k], k, f);
+        if (!is_ruze(k) || !has_optics) print_measure(&t->figure[k], k, f);
     if (amount == HF_PRINT_VERBOSE) print_first_order(t, f);
     print_yield(t, f);
     if (amount != HF_PRINT_SHORT) print_shares(t, f);

@@ -434,7 +434,6 @@ static hf_status find_net(job *j, hf_messages *messages)
         if (status == HF_OK) status = hf_load_case_stage_rest(p, j->rest_m, NULL);
         HF_TRY(explain_failure(j, status, "the truss in the load cases", messages));
     }
-    if (j->load_case && !strcmp(j->load_case, "nominal")) j->load_case = NULL;
     if (!j->load_case) return HF_OK;
     HF_TRY(load(j, j->i_load_case, &j->loaded, messages));
     j->net = &j->loaded.built;

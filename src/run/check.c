@@ -375,14 +375,17 @@ hf_status hf_check_try(hf_check *c, hf_messages *messages)
     if (!c->is_form_finished) return HF_OK;
     HF_TRY(hf_problem_explain(p, messages));
     HF_TRY(time_load_cases(c, messages));
-    if (!c->optimizes) time_tolerance(c);
-    if (!c->optimizes) return HF_OK;
+    if (!c->optimizes) {
+        time_tolerance(c);
+        return HF_OK;
+    }
     HF_TRY(hf_problem_base(p, messages));
     HF_TRY(hf_reach_check(p, messages));
     HF_TRY(hf_feasible_check(p, NULL, advice, messages));
     hf_problem_warn_of_refine(p, messages);
     hf_problem_warn_of_front(p, messages);
     if (time_optimisation(c, &evaluator) != HF_OK) return hf_error(messages, HF_NO_MEMORY, "out of memory");
+    if (!p->settings.has_tolerance) return HF_OK;
     /* the samples are those of the refined design, if the trial has found it: slack cables take longer */
     hf_evaluate(&evaluator, p->initial, &p->workspace, &p->point, &result);
     if (hf_status_has_shape(result.status)) time_tolerance(c);

@@ -235,7 +235,7 @@ static void note_scale(const hf_run *r, hf_summary *s)
 {
     const hf_model *m = &r->problem.model;
     const double *initial = r->optimiser.population.initial, *design = s->taken.point ? r->taken.design : r->design;
-    if (!r->has_design || !m->variable || !initial || (s->front && !s->taken.point)) return;
+    if (!r->has_design || !initial || (s->front && !s->taken.point)) return;
     hf_variables_scales(m, initial, design, &s->scale_min, &s->scale_max);
 }
 

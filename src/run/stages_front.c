@@ -69,14 +69,16 @@ typedef struct {
 } judge;
 
 /* Gives the verdicts of a shape on the rows without a share. A design without an as-built net fails in load cases. */
-static hf_status judge_nominal(judge *q, hf_workspace *w, const hf_form_result *result)
+static hf_status judge_nominal(judge *q, hf_workspace *w, hf_form_result *result)
 {
     hf_problem *p = &q->run->problem;
     const hf_model *m = &p->model;
     hf_surface_measures measures = {0};
     hf_messages unread = {0};
     hf_status status = HF_OK;
+    if (q->stage.required.nominal == 0) return HF_OK;
     hf_requirements_stage_forget(&q->stage);
+    hf_certify(m, w, result);
     if (hf_required_needs_surface(&q->stage.required, false, 0))
         status = hf_surface_measure(&p->surface, &p->facets, m, w->position_m, w->tension_N, &measures);
     if (status == HF_OK) status = hf_requirements_stage_take(&q->stage, 0, m, w, result, &measures, &unread);
@@ -111,7 +113,6 @@ static hf_status judge_point(judge *q, int i)
     hf_workspace *w =
         hf_batch_run_one(&r->problem.batch, front->design + (size_t)i * (size_t)front->n_variable, &result);
     if (!hf_status_has_shape(result.status)) return HF_OK;
-    hf_certify(&r->problem.model, w, &result);
     hf_requirements_stage_clear(&q->stage, q->verdict);
     HF_TRY(judge_nominal(q, w, &result));
     HF_TRY(judge_samples(q, w, i));
