@@ -65,6 +65,15 @@ double hf_print_loss_dB(double loss_dB)
     return loss_dB < LEAST_DB ? 0 : loss_dB;
 }
 
+int hf_print_highest_optics(const hf_summary *s, const hf_surface_measures *m)
+{
+    const hf_double_list *at = &s->surface.frequencies_Hz;
+    int highest = -1;
+    for (int k = 0; m->is_measured && k < at->n; k++)
+        if (isfinite(m->refocused_gain_loss_dB[k]) && (highest < 0 || at->value[k] > at->value[highest])) highest = k;
+    return highest;
+}
+
 hf_print_text hf_print_counted(int n_inner_node, int n_free)
 {
     hf_print_text t = {""};

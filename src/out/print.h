@@ -58,3 +58,6 @@ const char *hf_print_bound(const char *unit, double at_least, double at_most, ch
 
 /* Returns a gain loss for display, dB: 0 when it is rounding. */
 double hf_print_loss_dB(double loss_dB);
+
+/* Returns the index of the highest frequency at which a shape has figures by physical optics, or -1. */
+int hf_print_highest_optics(const hf_summary *summary, const hf_surface_measures *surface);

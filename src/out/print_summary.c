@@ -28,15 +28,6 @@ static bool has_merit(const hf_summary *s)
     return s->objectives.n > 0 && !s->objectives.is_front;
 }
 
-int hf_print_highest_optics(const hf_summary *s, const hf_surface_measures *m)
-{
-    const hf_double_list *at = &s->surface.frequencies_Hz;
-    int highest = -1;
-    for (int k = 0; m->is_measured && k < at->n; k++)
-        if (isfinite(m->refocused_gain_loss_dB[k]) && (highest < 0 || at->value[k] > at->value[highest])) highest = k;
-    return highest;
-}
-
 /* Formats a gain loss by physical optics. */
 static hf_print_text optics_text(double loss_dB, int digits)
 {

@@ -16,9 +16,6 @@ void hf_print_answer(const hf_summary *summary, FILE *file);
  * there are some. Prints nothing without surface.frequencies_Hz. */
 void hf_print_gain_loss(const hf_summary *summary, FILE *file);
 
-/* Returns the index of the highest frequency at which a shape has figures by physical optics, or -1. */
-int hf_print_highest_optics(const hf_summary *summary, const hf_surface_measures *surface);
-
 /* Prints a block for each stage: how it ended, tension ratios of sets, certificates, the surface, times. */
 void hf_print_details(const hf_summary *summary, FILE *file);
 
