@@ -15,9 +15,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS_MAX 6      /* maximum of one fit; nets cut to 0.05 mm need two or three */
+#define STEPS_MAX 20     /* maximum of one fit; nets cut to 0.05 mm need two or three, rough facets up to 20 */
 #define SETTLED 1e-11    /* converged if a step lowers the sum of squares by less than this share */
-#define ACROSS_MOST 0.05 /* relative to the size; half of the bound in the reference */
+#define ACROSS_MOST 0.09 /* relative to the size; the bound is 0.1 in the reference */
 #define FOCAL_MOST 1.5   /* ratio of fitted to target curvature, or its reciprocal; 2 in the reference */
 
 /* ---- a pose ---- */
