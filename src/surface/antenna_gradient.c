@@ -122,7 +122,8 @@ static bool pull_fit(pull *g, const hf_surface_pose *pose, double by_longer)
 {
     const size_t n = (size_t)g->a->n_point;
     const double *x = g->q.x, *by = g->by;
-    double by_move[3] = {0}, by_turn[3] = {0}, c = pose->curvature_per_m;
+    double c = pose->curvature_per_m;
+    hf_surface_motion by_fit = {.curve = -by_longer / (4 * c * c)};
     for (size_t i = 0; i < n; i++) {
         double of_place[3], of_area[3], arm[3], to[3], up[3], to_up[3];
         for (size_t d = 0; d < 3; d++) {
@@ -134,11 +135,11 @@ static bool pull_fit(pull *g, const hf_surface_pose *pose, double by_longer)
         hf_cross(arm, to, of_place);
         hf_cross(up, to_up, of_area);
         for (int d = 0; d < 3; d++) {
-            by_move[d] += to[d];
-            by_turn[d] += of_place[d] + of_area[d];
+            by_fit.move[d] += to[d];
+            by_fit.turn[d] += of_place[d] + of_area[d];
         }
     }
-    return hf_surface_pose_pull(pose, (int)n, x, g->a->root_weight, by_move, by_turn, -by_longer / (4 * c * c), g->by);
+    return hf_surface_pose_pull(pose, (int)n, x, g->a->root_weight, &by_fit, g->by);
 }
 
 /* Turns vectors [3][n] from the frame of a pose back into that of the net. */

@@ -22,6 +22,25 @@
 
 /* ---- a pose ---- */
 
+/* Returns the change of a pose by a parameter of the fit. A turn by an angle changes the rotation T by T' = [w] T. */
+static hf_surface_motion motion_of_quantity(const hf_surface_pose *q, const double angle[3], int quantity)
+{
+    static const int shift_axis[HF_FIT_N_QUANTITY] = {[HF_FIT_SHIFT_X] = 0, [HF_FIT_SHIFT_Y] = 1, [HF_FIT_SHIFT_Z] = 2};
+    hf_surface_motion m = {.curve = quantity == HF_FIT_CURVE ? q->wanted_per_m : 0};
+    int about = hf_fit_angle_of(quantity);
+    if (about >= 0) {
+        const int order[3] = {about == 0, about == 1, about == 2};
+        double slope[3][3];
+        hf_fit_rotation(angle, order, slope);
+        for (int d = 0; d < 3; d++)
+            m.turn[d] = hf_dot3(slope[(d + 2) % 3], q->turn[(d + 1) % 3]);
+    } else if (quantity != HF_FIT_CURVE) {
+        for (int d = 0; d < 3; d++)
+            m.move[d] = -q->size_m * q->turn[d][shift_axis[quantity]];
+    }
+    return m;
+}
+
 hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, const hf_surface_fit *fit,
                                    const hf_fit_parameters *parameters)
 {
@@ -32,8 +51,15 @@ hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, 
                          .shift_m = {fit->shift_x_m, fit->shift_y_m, fit->shift_z_m},
                          .curvature_per_m = 1 / (4 * fit->focal_length_m),
                          .wanted_per_m = 1 / (4 * focal_length_m),
-                         .size_m = parameters->size_m};
+                         .size_m = parameters->size_m,
+                         .size_end = {parameters->size_end[0], parameters->size_end[1]}};
     hf_fit_rotation(angle, (const int[3]){0, 0, 0}, q.turn);
+    for (int k = 0; k < q.n + parameters->n_held && q.n > 0; k++) {
+        int quantity = parameters->quantity[k];
+        if (k < q.n) q.free[k] = motion_of_quantity(&q, angle, quantity);
+        if (k >= q.n && quantity == HF_FIT_SHIFT_X) q.held_m[0] = q.shift_m[0];
+        if (k >= q.n && quantity == HF_FIT_SHIFT_Y) q.held_m[1] = q.shift_m[1];
+    }
     return q;
 }
 
@@ -157,16 +183,12 @@ static bool take_normal(const problem *p, double factor[N * N], int pivot[N], do
     return hf_dense_factor(N, factor, pivot) == 0;
 }
 
-/* A step in metres, radians and 1/m, in the frame of the surface. */
-typedef struct {
-    double move[3], turn[3], curve;
-} motion;
-
-static motion motion_of(const hf_surface_pose *q, const double step[N])
+static hf_surface_motion motion_of(const hf_surface_pose *q, const double step[N])
 {
     bool is_round = q->kind == HF_SURFACE_PARABOLOID;
     double size = q->size_m;
-    motion m = {.move = {size * step[1], is_round ? size * step[2] : 0, size * step[0]}, .curve = step[N - 1] / size};
+    hf_surface_motion m = {.move = {size * step[1], is_round ? size * step[2] : 0, size * step[0]},
+                           .curve = step[N - 1] / size};
     for (int d = 0; d < 3; d++)
         m.turn[d] = d < 2 || !is_round ? step[is_round ? 3 + d : 2 + d] : 0;
     return m;
@@ -174,7 +196,7 @@ static motion motion_of(const hf_surface_pose *q, const double step[N])
 
 static void take_step(hf_surface_pose *q, const double step[N])
 {
-    motion m = motion_of(q, step);
+    hf_surface_motion m = motion_of(q, step);
     move_pose(q, m.move, m.turn);
     q->curvature_per_m += m.curve;
 }
@@ -256,7 +278,7 @@ double hf_surface_pose_bound(const hf_surface_pose *pose, int n, const double *p
 
 /* Computes the rate along a motion of the derivatives of r^2/2 by a point p in the frame of the surface, and by the
  * curvature (returned). r = u w is the half-path error: u = z - c s with s = x^2 + y^2, and w = 1/(1 + 4 c^2 s). */
-static double rate_of_square(const hf_surface_pose *q, const motion *m, const double p[3], double rate[3])
+static double rate_of_square(const hf_surface_pose *q, const hf_surface_motion *m, const double p[3], double rate[3])
 {
     const double round_ = q->kind == HF_SURFACE_PARABOLOID, c = q->curvature_per_m;
     const double s = p[0] * p[0] + round_ * p[1] * p[1], u = p[2] - c * s, w = 1 / (1 + 4 * c * c * s);
@@ -281,29 +303,22 @@ static double rate_of_square(const hf_surface_pose *q, const motion *m, const do
     return dr * rc + r * drc;
 }
 
-/* Writes the derivatives by the parameters of a step. `by` contains those by shifts, turns and curvature. */
-static void put_parameters(const hf_surface_pose *q, const motion *by, double to[N])
+/* Returns the rate of a figure along a motion, from its derivatives. */
+static double dot_motion(const hf_surface_motion *by, const hf_surface_motion *m)
 {
-    bool is_round = q->kind == HF_SURFACE_PARABOLOID;
-    to[0] = q->size_m * by->move[2];
-    to[1] = q->size_m * by->move[0];
-    if (is_round) to[2] = q->size_m * by->move[1];
-    for (int d = 0; d < (is_round ? 2 : 3); d++)
-        to[(is_round ? 3 : 2) + d] = by->turn[d];
-    to[N - 1] = by->curve / q->size_m;
+    return hf_dot3(by->move, m->move) + hf_dot3(by->turn, m->turn) + by->curve * m->curve;
 }
 
-/* Computes the rates along a step: of the sums of the derivatives, and with `by`, of those by the points, which are
+/* Computes the rates along a motion: of the sums of the derivatives, and with `by`, of those by the points, which are
  * subtracted from by [3][n]. */
-static motion push_square(const hf_surface_pose *q, int n, const double *x, const double *root_weight,
-                          const double step[N], double *by)
+static hf_surface_motion push_square(const hf_surface_pose *q, int n, const double *x, const double *root_weight,
+                                     const hf_surface_motion *m, double *by)
 {
-    const motion m = motion_of(q, step);
-    motion sum = {0};
+    hf_surface_motion sum = {0};
     for (int i = 0; i < n; i++) {
         double p[3] = {x[i], x[n + i], x[2 * (size_t)n + (size_t)i]}, rate[3], arm[3], turn[3];
         double weight = root_weight[i] * root_weight[i];
-        sum.curve += weight * rate_of_square(q, &m, p, rate);
+        sum.curve += weight * rate_of_square(q, m, p, rate);
         for (int d = 0; d < 3; d++)
             arm[d] = p[d] - q->center_m[d];
         hf_cross(arm, rate, turn);
@@ -316,31 +331,57 @@ static motion push_square(const hf_surface_pose *q, int n, const double *x, cons
     return sum;
 }
 
+/* Adds to by [3][n] that the points also move the centre, their mean, and the size, which is the unit of held shifts.
+ * by_move: derivatives of the figure by a shift of all points in the frame of the surface. A whole fit undoes such a
+ * shift. */
+static void pull_center(const hf_surface_pose *q, int n, const double by_move[3], double *by)
+{
+    double held[3], by_center[3];
+    for (int d = 0; d < 3; d++)
+        held[d] = hf_dot3(q->turn[d], q->held_m);
+    for (int d = 0; d < 3; d++) /* a shift of the centre by v moves the points by v - T v; seen in the frame, T v' */
+        by_center[d] = hf_dot3(q->turn[d], by_move) - by_move[d];
+    for (int d = 0; d < 3; d++)
+        for (int i = 0; i < n; i++)
+            by[d * n + i] += by_center[d] / n;
+    for (int end = 0; end < 2; end++)
+        for (int d = 0; d < 3; d++)
+            by[d * n + q->size_end[end] % n] +=
+                (end ? -1 : 1) * hf_dot3(held, by_move) / (2 * q->size_m) * q->turn[d][q->size_end[end] / n];
+}
+
 /* At the best fit, the gradient of the sum of squares by the parameters is 0. If the points move, the parameters move
  * by - H^-1 (change of this gradient), where H is the matrix of second derivatives. */
 bool hf_surface_pose_pull(const hf_surface_pose *q, int n, const double *x, const double *root_weight,
-                          const double by_move[3], const double by_turn[3], double by_curvature, double *by)
+                          const hf_surface_motion *by_fit, double *by)
 {
-    double matrix[N * N], column[N], by_step[N];
+    double matrix[N * N], by_step[N];
     int pivot[N];
-    motion given = {.curve = by_curvature};
-    const bool is_round = q->kind == HF_SURFACE_PARABOLOID;
-    const bool is_fixed[N] = {[1] = q->n < N, [2] = is_round && q->n < N, [N - 1] = q->n < (is_round ? 4 : 5)};
+    hf_surface_motion part[N], all = {0};
     if (q->n == 0) return false;
-    memcpy(given.move, by_move, sizeof given.move);
-    memcpy(given.turn, by_turn, sizeof given.turn);
-    put_parameters(q, &given, by_step);
-    for (int k = 0; k < N; k++) {
+    for (int k = 0; k < q->n; k++) {
         double step[N] = {0};
         step[k] = 1;
-        motion rate = push_square(q, n, x, root_weight, step, NULL);
-        put_parameters(q, &rate, column);
-        for (int j = 0; j < N; j++)
-            matrix[j * N + k] = is_fixed[j] || is_fixed[k] ? j == k : column[j];
-        if (is_fixed[k]) by_step[k] = 0;
+        part[k] = q->n == N ? motion_of(q, step) : q->free[k];
+        by_step[k] = dot_motion(by_fit, &part[k]);
     }
-    if (hf_dense_factor(N, matrix, pivot) != 0) return false;
-    hf_dense_solve(N, matrix, pivot, 1, by_step);
-    push_square(q, n, x, root_weight, by_step, by);
+    for (int k = 0; k < q->n; k++) {
+        hf_surface_motion rate = push_square(q, n, x, root_weight, &part[k], NULL);
+        for (int j = 0; j < q->n; j++)
+            matrix[j * q->n + k] = dot_motion(&rate, &part[j]);
+    }
+    if (hf_dense_factor(q->n, matrix, pivot) != 0) return false;
+    hf_dense_solve(q->n, matrix, pivot, 1, by_step);
+    for (int k = 0; k < q->n; k++) {
+        for (int d = 0; d < 3; d++) {
+            all.move[d] += by_step[k] * part[k].move[d];
+            all.turn[d] += by_step[k] * part[k].turn[d];
+        }
+        all.curve += by_step[k] * part[k].curve;
+    }
+    hf_surface_motion left = push_square(q, n, x, root_weight, &all, by);
+    for (int d = 0; d < 3; d++)
+        left.move[d] = by_fit->move[d] - left.move[d];
+    if (q->n < N) pull_center(q, n, left.move, by);
     return true;
 }

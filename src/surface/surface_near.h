@@ -5,12 +5,23 @@
 
 #include "surface/surface_fit.h"
 
+/* A change of a pose in the frame of the surface, or the derivatives of a figure by such a change: shift in m, turn
+ * about the centre in rad, curvature in 1/m. */
+typedef struct {
+    double move[3], turn[3], curve;
+} hf_surface_motion;
+
 /* A fitted surface: z = curvature x^2 (+ y^2). In its frame, point p is at turn (p - center - shift) + center. */
 typedef struct {
     int n; /* parameters that the points of this fit determine, of HF_FIT_N_PARAMETER; 0: there is no fit */
     hf_surface_kind kind;
     double center_m[3], shift_m[3], turn[3][3];
     double curvature_per_m, wanted_per_m, size_m;
+    /* Without all parameters: changes of the n free ones, shifts held at a bound, and the coordinates, of [3][n_point],
+     * whose distance is twice size_m. */
+    hf_surface_motion free[HF_FIT_N_PARAMETER];
+    double held_m[3];
+    int size_end[2];
 } hf_surface_pose;
 
 hf_surface_pose hf_surface_pose_of(hf_surface_kind kind, double focal_length_m, const hf_surface_fit *fit,
@@ -41,8 +52,7 @@ double hf_surface_pose_bound(const hf_surface_pose *pose, int n, const double *p
                              const double gradient[HF_FIT_N_PARAMETER], double change_m);
 
 /* Adds to by [3][n], derivatives of a figure by points x [3][n] in the frame of their best fit, how the figure changes
- * because the fit follows the points. by_move, by_turn, by_curvature: derivatives of the figure by the fit, whose steps
- * turn the points about the centre and shift them, in this frame. Parameters that the points do not determine count as
- * constant, among them the turn of a paraboloid about its axis. Returns false without a fit. */
+ * because the fit follows the points. by_fit: derivatives of the figure by the fit. Parameters that the points do not
+ * determine are constant, and so are those held at a bound, in units of the size. Returns false without a fit. */
 bool hf_surface_pose_pull(const hf_surface_pose *pose, int n, const double *x, const double *root_weight,
-                          const double by_move[3], const double by_turn[3], double by_curvature, double *by);
+                          const hf_surface_motion *by_fit, double *by);

@@ -337,6 +337,55 @@ START_TEST(derivatives_are_those_of_differences)
 }
 END_TEST
 
+/* Points of a surface with another apex and focal length, whose fits hold parameters at bounds or leave them out. */
+START_TEST(derivatives_follow_a_fit_of_some_parameters)
+{
+    static const struct {
+        double apex_m[2], slide_m, middle_m, longer;
+        int n;
+    } of[] = {{{0.1, 0.1}, 0, 0, 0.4, 5}, {{0.7, 0}, 0, 3.5, 1, 4}, {{0, 0}, 0.4, 4, 1, 5}, {{0.7, 0.8}, 0, 0, 1, 4}};
+    static double gradient[3 * NODES_MOST], way[3 * NODES_MOST], start_m[3 * NODES_MOST];
+    const double step_m = 1e-4;
+    struct rng rng = rng_start(1150 + (uint64_t)_i);
+    hf_antenna near;
+    bool exists;
+    begin(HF_SURFACE_PARABOLOID, of[_i].slide_m > 0 ? 32 : 8, 3, of[_i].middle_m, 6);
+    make(3);
+    for (int i = 0; i < d.n_node; i++) {
+        double *p = d.position_m + 3 * (size_t)i, middle_m = of[_i].middle_m;
+        p[0] = middle_m + (p[0] - middle_m) * (1.2 - 0.02 * p[1] * p[1]); /* so that one point is farthest out */
+        double x = p[0] - of[_i].apex_m[0], y = p[1] - of[_i].apex_m[1];
+        p[2] = (x * x + y * y) / (4 * 6 * of[_i].longer);
+        p[0] += of[_i].slide_m;
+    }
+    shake(&rng, 1e-4);
+    memcpy(start_m, d.position_m, sizeof start_m);
+    ck_assert_int_eq(hf_antenna_near(&d.antenna, &shape, d.scratch, &near), HF_OK);
+    d.antenna.start = near.start;
+    ck_assert_int_eq(near.start.n, of[_i].n);
+    ck_assert_int_eq(hf_antenna_gradient(&d.antenna, HF_ANTENNA_REFOCUSED, &shape, d.n_node, gradient, &exists), HF_OK);
+    ck_assert(exists);
+    for (int trial = 0; trial < 4; trial++) {
+        double at[5], rate = 0, size = 0;
+        for (int i = 0; i < 3 * d.n_node; i++) { /* the last one stretches the net, and thus moves the bounds */
+            way[i] = trial < 3 ? rng_uniform(&rng, -1, 1) : i % 3 < 2 ? start_m[i] / 3 : 0;
+            rate += gradient[i] * way[i];
+            size += fabs(gradient[i] * way[i]);
+        }
+        for (int side = -2; side <= 2; side++) {
+            for (int i = 0; i < 3 * d.n_node; i++)
+                d.position_m[i] = start_m[i] + side * step_m * way[i];
+            at[side + 2] = figure_of(HF_ANTENNA_REFOCUSED);
+        }
+        double found = (8 * (at[3] - at[1]) - (at[4] - at[0])) / (12 * step_m);
+        ck_assert_msg(fabs(found - rate) < 1e-4 * size, "way %d: %.12g, not %.12g: %g of %g", trial, rate, found,
+                      fabs(found - rate) / size, size);
+        memcpy(d.position_m, start_m, sizeof start_m);
+    }
+    end();
+}
+END_TEST
+
 /* ---- figures without a meaning ---- */
 
 START_TEST(figures_without_a_meaning_are_missing)
@@ -435,6 +484,7 @@ Suite *suite_unit_antenna(void)
     tcase_add_loop_test(tcase, a_tilt_turns_the_beam, 0, 2);
     tcase_add_loop_test(tcase, bounds_hold, 0, 2);
     tcase_add_loop_test(tcase, derivatives_are_those_of_differences, 0, 12);
+    tcase_add_loop_test(tcase, derivatives_follow_a_fit_of_some_parameters, 0, 4);
     tcase_add_test(tcase, figures_without_a_meaning_are_missing);
     tcase_add_test(tcase, instruction_sets_change_no_bit);
     tcase_add_test(tcase, memory_may_fail);
