@@ -215,6 +215,10 @@ hf_status hf_store_shape(hf_store *store, hf_stage stage, const hf_model *model,
 /* Writes the Pareto front and replaces an earlier Pareto front. The summary contains the names of the objectives. */
 hf_status hf_store_front(hf_store *store, const hf_scene *scene, const hf_model *model, const hf_summary *summary,
                          const hf_front *front, hf_messages *messages);
+/* Reads the Pareto front that an earlier session of this run has stored, and the time in seconds that it took. Without
+ * one, n_point is 0. The caller frees the front. Returns HF_OK, HF_NO_MEMORY or HF_IO. */
+hf_status hf_store_restore_front(hf_store *store, int n_variable, hf_front *front, double *wall_s,
+                                 hf_messages *messages);
 
 /* Writes the far field of the shape of a stage and replaces an earlier far field. */
 hf_status hf_store_pattern(hf_store *store, hf_stage stage, const hf_pattern_table *table,

@@ -65,6 +65,7 @@ typedef struct {
     hf_run *run;
     hf_requirements_stage stage;
     hf_requirement_verdict *verdict; /* [stage.required.n] of one point */
+    int n_design;                    /* points that have not failed; those that have are the last ones */
     double begin_s;
 } judge;
 
@@ -92,7 +93,7 @@ static hf_status judge_nominal(judge *q, hf_workspace *w, hf_form_result *result
 static hf_status judge_samples(judge *q, const hf_workspace *w, int i)
 {
     const hf_required *of = &q->stage.required;
-    const hf_tolerance_design design = {w, i, q->run->front.n_point, q->begin_s};
+    const hf_tolerance_design design = {w, i, q->n_design, q->begin_s};
     hf_messages unread = {0};
     hf_status status = HF_OK;
     if (of->n_share > 0) status = hf_tolerance_stage_judge(q->run, &design, q->verdict, &unread);
@@ -120,18 +121,25 @@ static hf_status judge_point(judge *q, int i)
     return HF_OK;
 }
 
-/* Gives the verdicts of all points on the rows of `requirements`. */
-static hf_status judge_front(hf_run *r, hf_messages *messages)
+static bool is_judged(const hf_run *r)
 {
-    judge q = {.run = r, .begin_s = hf_clock_s()};
+    return r->requirements.required.n > 0 && !hf_tolerance_stage_is_task(r->request);
+}
+
+/* Gives the verdicts of all points on the rows of `requirements`; n_design of them have not failed. */
+static hf_status judge_front(hf_run *r, int n_design, hf_messages *messages)
+{
+    judge q = {.run = r, .begin_s = hf_clock_s(), .n_design = n_design};
     int n = r->requirements.required.n;
-    if (n == 0 || hf_tolerance_stage_is_task(r->request)) return HF_OK;
+    if (!is_judged(r)) return HF_OK;
     hf_status status = hf_requirements_stage_open(&r->problem, &q.stage, messages);
     if (status == HF_OK && !(q.verdict = calloc((size_t)n, sizeof *q.verdict))) status = HF_NO_MEMORY;
     for (int i = 0; i < r->front.n_point && status == HF_OK; i++) {
         if (hf_run_must_stop(r)) status = HF_INTERRUPTED;
         if (status == HF_OK && r->front.point[i].status == HF_OK) status = judge_point(&q, i);
     }
+    if (status == HF_INTERRUPTED)
+        snprintf(r->stopped_at, sizeof r->stopped_at, " while it judged the points of the front, which are stored");
     if (status == HF_NO_MEMORY) hf_error(messages, status, "out of memory for the requirements");
     if (status == HF_IO) hf_error(messages, status, "the samples of a point of the front cannot be kept");
     free(q.verdict);
@@ -149,9 +157,12 @@ static hf_status keep_front(hf_run *r, double wall_s, hf_summary *s, hf_messages
     memcpy(front->initial, s->stage[HF_STAGE_FORM].result.objective, sizeof front->initial);
     if (!s->front) s->front = calloc(1, sizeof *s->front);
     if (!s->front) return hf_error(messages, HF_NO_MEMORY, "out of memory for the front");
-    HF_TRY(judge_front(r, messages));
-    hf_front_tabulate(front, s->front);
     s->front->wall_s = wall_s;
+    hf_front_tabulate(front, s->front);
+    /* A session that is interrupted while it judges the points keeps the front. */
+    if (is_judged(r)) HF_TRY(hf_store_front(r->store, &r->problem.scene, &r->problem.model, s, front, messages));
+    HF_TRY(judge_front(r, front->n_point - s->front->n_failed, messages));
+    hf_front_tabulate(front, s->front);
     if (s->front->n_failed > 0) {
         hf_status first = front->point[front->n_point - s->front->n_failed].status;
         hf_warning(messages,
@@ -242,15 +253,28 @@ static hf_status search_front(hf_run *r, int *end)
 
 /* ---- the stage ---- */
 
+/* Takes the front that an earlier session has found and stored by Levenberg-Marquardt, if there is one. */
+static hf_status take_stored(hf_run *r, double *took_s, bool *is_taken, hf_messages *messages)
+{
+    hf_front stored;
+    HF_TRY(hf_store_restore_front(r->store, r->problem.model.n_variable, &stored, took_s, messages));
+    *is_taken = stored.n_point > 0 && stored.minimised >= 0; /* that of the genetic algorithm has no such objective */
+    hf_front_free(*is_taken ? &r->front : &stored);
+    if (*is_taken) r->front = stored;
+    return HF_OK;
+}
+
 /* Finds the front by Levenberg-Marquardt and keeps it. */
 static hf_status refine_front(hf_run *r, hf_summary *s, hf_messages *messages)
 {
     char why[HF_NO_DESIGN_SIZE];
     int end = -1;
     bool has_earlier = r->front.n_point > 0;
-    double begin_s = hf_clock_s();
-    hf_status status = search_front(r, &end);
-    double took_s = hf_clock_s() - begin_s;
+    bool is_stored;
+    double begin_s = hf_clock_s(), took_s;
+    HF_TRY(take_stored(r, &took_s, &is_stored, messages));
+    hf_status status = is_stored ? HF_OK : search_front(r, &end);
+    if (!is_stored) took_s = hf_clock_s() - begin_s;
     if (status == HF_INTERRUPTED)
         snprintf(r->stopped_at, sizeof r->stopped_at,
                  " in the refinement of the front, which restarts and repeats %.0f s", took_s);

@@ -131,6 +131,22 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
     hf_front_free(&front);
 }
 
+hf_status hf_store_restore_front(hf_store *store, int n_variable, hf_front *front, double *wall_s,
+                                 hf_messages *messages)
+{
+    *front = (hf_front){.minimised = -1, .knee = -1};
+    if (!store) return HF_OK;
+    hf_hdf5 *io = hf_store_enter(store, messages);
+    if (!hf_hdf5_has(io, io->file, "/front")) return hf_hdf5_unlock(io->status);
+    hid_t group = hf_hdf5_open_group(io, "/front");
+    read_front(io, group, n_variable, front);
+    hf_hdf5_read_list(io, group, "design", HF_KIND_REAL, front->n_point, n_variable, front->design);
+    hf_hdf5_get(io, group, ".", "wall_s", HF_KIND_REAL, wall_s, 0);
+    hf_hdf5_close(io, group);
+    if (io->status != HF_OK) hf_front_free(front);
+    return hf_hdf5_unlock(io->status);
+}
+
 hf_status hf_store_read_front(const char *path, hf_front *front, char **variable, size_t *variable_size,
                               hf_messages *messages)
 {

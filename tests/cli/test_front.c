@@ -1,5 +1,5 @@
 /* Fronts of optimize.front on the surface of the program: summary, JSON, file, table, and what is refused. */
-#include "cli.h"
+#include "session.h"
 
 #define FRONT                                                                                                          \
     keep(source_path("configs/chen2022.yaml")), "--set", "optimize.method=lm", "--set",                                \
@@ -135,6 +135,32 @@ START_TEST(points_of_a_front_are_judged_by_samples)
     HIFDM(6, "run", FRONT, SHARES, "-o", file, "--restart", "--strict", "--set", "requirements.0.at_most=1e-3");
     ERR("every point of the front fails a requirement; point ");
     OUT("verdict: fail; 0 of 7 points of the front pass, 7 fail; point ");
+}
+END_TEST
+
+static bool says_tolerance(const char *err)
+{
+    return says(err, "{\"phase\": \"tolerance\"");
+}
+
+/* A session that is told to stop while the points are judged leaves the front, and the next one only judges it. */
+START_TEST(a_front_survives_an_interrupt_while_it_is_judged)
+{
+#define MANY FRONT, SHARES, "--set", "tolerance.samples=6000", "--progress", "jsonl", "-o"
+    const char *path = temp("f.h5"), *whole = temp("whole.h5");
+    const char *const argv[] = {hifdm_program(), "run", MANY, path, NULL};
+    session s = start_program(argv);
+    ck_assert(wait_until(&s, says_tolerance, temp("err")));
+    ck_assert_int_eq(end_by(&s, SIGTERM), 75);
+    ck_assert(says(temp("err"), "the run was interrupted while it judged the points of the front, which are stored"));
+    HIFDM(0, "show", path);
+    OUT("unfinished: Pareto front of 7 points: minimum psi 4.2834 mm");
+    HIFDM(0, "run", MANY, path);
+    ck_assert(!strstr(said.err, "\"phase\": \"refine\""));
+    HIFDM(0, "run", MANY, whole);
+    ck_assert(strstr(said.err, "\"phase\": \"refine\""));
+    HIFDM(0, "diff", path, whole);
+    OUT(", 0 differ");
 }
 END_TEST
 
@@ -472,6 +498,7 @@ Suite *suite_cli_front(void)
     tcase_add_test(tests, points_of_a_front_have_verdicts);
     tcase_add_test(tests, generations_have_verdicts);
     tcase_add_test(tests, points_of_a_front_are_judged_by_samples);
+    tcase_add_test(tests, a_front_survives_an_interrupt_while_it_is_judged);
     tcase_add_test(tests, a_front_says_how_far_it_is);
     tcase_add_test(tests, a_slope_says_of_what_it_is);
     tcase_add_test(tests, the_least_beside_an_objective_that_is_met);
