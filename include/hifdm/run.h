@@ -33,7 +33,7 @@ typedef struct {
     int first_generation;        /* search: first generation that this process evaluates */
     bool is_last;                /* no generation, step or sample will follow */
     long evaluations;            /* evaluations of designs or samples in this phase and process */
-    double best_psi_m;           /* psi of the best design; NaN: no feasible design is known */
+    double best_psi_m;           /* psi of the best design; NaN: no feasible design is known, or there is a front */
     double elapsed_s;            /* time in this phase and process */
     long samples, samples_all;   /* tolerance: number of finished samples, and number of all samples */
     /* tolerance, after all samples: scale factor of the errors whose yield is being determined; otherwise 0 */
@@ -95,6 +95,7 @@ typedef struct {
 typedef struct {
     bool of_sweep;     /* run one point of the sweep of the case; false: reject a case with a section sweep */
     bool of_tolerance; /* reject a case without a section tolerance */
+    bool is_strict;    /* reject a case without requirements */
     /* If tasks > 0, the run computes only the samples of this task, 0 to tasks - 1, without a result file. If task is
      * -1, the run combines the samples of all tasks. */
     int task, tasks;

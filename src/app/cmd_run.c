@@ -24,10 +24,6 @@ static hf_status judge_strictly(const hf_summary *s, hf_messages *messages)
 {
     hf_judgement of = hf_summary_judge(s);
     if (!s->finished) return HF_OK; /* a task of several */
-    if (s->n_requirement == 0)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "--strict checks requirements, but the case has none: add the list "
-                        "`requirements`, or remove the option");
     if (of.n_failed == 0) return HF_OK;
     if (s->front && hf_front_is_judged(s->front))
         return hf_error(messages, HF_REQUIREMENT_FAILED,
@@ -62,6 +58,7 @@ static hf_status run_case(const hf_options *o, FILE *file, hf_messages *messages
                               .output = {.path = o->output, .restart = o->force, .argc = o->argc, .argv = o->argv},
                               .control = {o->threads, hf_signals_watch(), hf_progress_show, &progress},
                               .part = {.of_tolerance = of_tolerance,
+                                       .is_strict = o->strict,
                                        .task = o->task,
                                        .tasks = of_tolerance ? o->tasks : 0,
                                        .more_steps = o->more}};

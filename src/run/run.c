@@ -57,6 +57,12 @@ static hf_status prepare(hf_run *r, hf_summary *s, hf_messages *messages)
         return hf_error(messages, HF_BAD_USAGE,
                         "%s: this file has a `sweep` section. Run the study with 'hifdm sweep %s'", q->case_path,
                         q->case_path);
+    if (part->is_strict && settings->n_requirement == 0)
+        return hf_error(
+            messages, HF_BAD_USAGE,
+            "%s: --strict checks requirements, but the case has none. Add the list `requirements`, or remove "
+            "the option",
+            q->case_path);
     if (part->of_tolerance && !settings->has_tolerance)
         return hf_error(messages, HF_BAD_USAGE,
                         "%s: the case has no `tolerance` section. 'hifdm schema' lists the keys of this section",
@@ -79,6 +85,7 @@ static hf_status open_to_continue(hf_run *r, hf_store_state *state, hf_messages 
     hf_status status = *state == HF_STORE_FINISHED ? hf_store_read_finished(r->output, before, messages) : HF_OK;
     const hf_refine_summary refine = before->refine;
     bool has_refine = before->stage[HF_STAGE_REFINE].exists && refine.algorithm_stop != HF_REFINE_TAKEN;
+    bool is_infeasible = before->status == HF_NO_FEASIBLE;
     hf_summary_free(before);
     free(before);
     HF_TRY(status);
@@ -88,10 +95,11 @@ static hf_status open_to_continue(hf_run *r, hf_store_state *state, hf_messages 
                         "--more first",
                         r->output, *state == HF_STORE_UNFINISHED ? "is unfinished" : "does not exist");
     if (!has_refine)
-        return hf_error(messages, HF_BAD_USAGE,
-                        "%s: this result has no refinement that --more could continue. Set optimize.method to lm or "
-                        "ga+lm",
-                        r->output);
+        return hf_error(messages, HF_BAD_USAGE, "%s: this result has no refinement that --more could continue%s",
+                        r->output,
+                        is_infeasible ? ", because no design met the constraints. Loosen requirements or limits, or "
+                                        "change the start, and run again"
+                                      : ". Set optimize.method to lm or ga+lm");
     r->steps_before = refine.steps;
     if (refine.algorithm_stop == HF_REFINE_CONVERGED || refine.algorithm_stop == HF_REFINE_STALLED) {
         hf_warning(messages, "%s: --more changes nothing, because the refinement has %s", r->output,

@@ -19,7 +19,7 @@ typedef struct {
     X(CHARS, verdict, "verdict", "pass, fail or undecided")                                                            \
     X(CHARS, figure, "figure", "what the row bounds")                                                                  \
     X(CHARS, of.row.set, "set", "cables; empty: all")                                                                  \
-    X(CHARS, feed, "feed", "feed of figures of the surface")                                                           \
+    X(CHARS, feed, "feed", "feed of figures of the surface; empty: the figure has none")                               \
     X(REAL, of.row.frequency_Hz, "frequency_Hz", "of gain_loss, gain and pointing; NaN: none")                         \
     X(CHARS, of.row.load_case, "load_case", "nominal, all or the name of a load case")                                 \
     X(REAL, of.row.at_least, "at_least", "minimum, in the unit of the figure; NaN: none")                              \
@@ -55,7 +55,8 @@ static void put_verdict(const hf_requirement_verdict *v, judged *row)
 {
     row->of = *v;
     strncpy(row->figure, hf_required_figure_word[v->row.figure], WORD_SIZE - 1);
-    strncpy(row->feed, hf_focus_word[v->row.feed], WORD_SIZE - 1);
+    if (hf_required_is_of(v->row.figure, HF_REQUIRED_OF_FEED))
+        strncpy(row->feed, hf_focus_word[v->row.feed], WORD_SIZE - 1);
     strncpy(row->verdict, hf_verdict_word[v->verdict], WORD_SIZE - 1);
     clear_rest(row->of.row.set, sizeof row->of.row.set);
     clear_rest(row->of.row.load_case, sizeof row->of.row.load_case);
@@ -67,7 +68,7 @@ static void get_verdicts(hf_hdf5 *io, const judged *rows, hf_summary *s)
 {
     for (int i = 0; i < s->n_requirement && io->status == HF_OK; i++) {
         int figure = index_of(rows[i].figure, HF_REQUIRED_N_FIGURE, hf_required_figure_word),
-            feed = index_of(rows[i].feed, HF_N_FOCUS, hf_focus_word),
+            feed = *rows[i].feed ? index_of(rows[i].feed, HF_N_FOCUS, hf_focus_word) : 0,
             verdict = index_of(rows[i].verdict, HF_VERDICT_N, hf_verdict_word);
         if (figure < 0 || feed < 0 || verdict < 0)
             hf_hdf5_damaged(io, io->file, GROUP, "has a word that this version does not know");

@@ -127,7 +127,7 @@ static void refuse_other_format(hf_store *s)
  * What remains is the content of an unfinished file. */
 static void remove_later_stages(hf_hdf5 *io)
 {
-    static const char *const later[] = {"/truss", "/load_cases", "/tolerance", "/VTKHDF"};
+    static const char *const later[] = {"/truss", "/load_cases", "/tolerance", "/requirements", "/VTKHDF"};
     hf_renamed_unlink(io);
     for (int i = 0; i < HF_HDF5_COUNT(later); i++)
         hf_layout_renew(io, io->file, later[i]);

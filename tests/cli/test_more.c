@@ -8,7 +8,9 @@
 #define LATER                                                                                                          \
     "cables: [{expansion_per_K: -1e-6}]\n"                                                                             \
     "truss: {expansion_per_K: 0, ring: {cells_per_bay: 2, bracing: single, held: bay}}\n"                              \
-    "load_cases: [{name: cold, temperature_K: -100}]\ntolerance: {sigma_cut_m: 1.0e-5, samples: 50}\n"
+    "load_cases: [{name: cold, temperature_K: -100}]\ntolerance: {sigma_cut_m: 1.0e-5, samples: 50}\n"                 \
+    "requirements:\n  - {figure: facets, at_most: 0.03, load_case: all, share: 0.9, search: off}\n"                    \
+    "  - {figure: tension, at_least: 1}\n"
 #define OPTIMIZE                                                                                                       \
     "optimize:\n  population: 8\n  generations: 6\n"                                                                   \
     "  variables: [{set: all, vary: force_density, range: 50 %}]\n  objective: [{figure: facets, feed: fixed}]\n"
@@ -125,7 +127,13 @@ START_TEST(what_cannot_continue_is_refused)
     const char *search = case_of("ga.yaml", NET "", "ga\n  refine: false", 3);
     HIFDM(0, "run", search, "-o", ga, "--quiet");
     HIFDM(2, "run", search, "-o", ga, "--more", "3");
-    ERRS("error: %s: this result has no refinement that --more could continue", ga);
+    ERRS("error: %s: this result has no refinement that --more could continue. Set optimize.method to lm", ga);
+    const char *none = case_of("none.yaml", NET "requirements: [{figure: facets, at_most: 1e-6}]\n", "lm", 3);
+    HIFDM(3, "run", none, "-o", temp("none.h5"), "--quiet");
+    HIFDM(2, "run", none, "-o", temp("none.h5"), "--more", "3");
+    ERRS("error: %s: this result has no refinement that --more could continue, because no design met the constraints. "
+         "Loosen requirements or limits, or change the start, and run again",
+         temp("none.h5"));
     HIFDM(0, "run", c, "-o", path, "--quiet");
     HIFDM(5, "run", c, "-o", path, "--more", "3", "--set", "form.pretension_N=11");
     ERR("finished result of another case. The differences are: form.pretension_N.");

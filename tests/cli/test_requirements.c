@@ -430,7 +430,7 @@ START_TEST(a_bound_at_the_value_is_undecided)
                                    "0.75}\n",
                *path = temp("a.h5");
     HIFDM(0, "run", file_with("c.yaml", formatted(text, 1.0, 1.0)), "-o", path, "--json");
-    double psi_m = number_after("\"figure\": \"psi\", \"set\": \"\", \"feed\": \"refocused\", "
+    double psi_m = number_after("\"figure\": \"psi\", \"set\": \"\", \"feed\": \"\", "
                                 "\"frequency_Hz\": null, \"load_case\": \"nominal\", \"at_least\": null, \"at_most\": "
                                 "1, \"share\": null, \"unit\": \"m\", "
                                 "\"value\": "),
@@ -497,7 +497,8 @@ START_TEST(strict_ends_with_its_own_status)
     HIFDM(0, "run", file_with("c.yaml", formatted(text, "1")), "-o", path, "--restart", "--strict", "--quiet");
     HIFDM(0, "run", c, "-o", path, "--strict", "--quiet");
     HIFDM(2, "run", file_with("d.yaml", BUILT_SCENE), "-o", temp("d.h5"), "--strict", "--quiet");
-    ERR("--strict checks requirements, but the case has none");
+    ERR("d.yaml: --strict checks requirements, but the case has none. Add the list `requirements`");
+    ck_assert(!is_there(temp("d.h5"))); /* it is refused before it runs */
     HIFDM(6, "run", file_with("c.yaml", formatted(text, "1e-3")), "-o", path, "--restart", "--strict", "--json");
     EXPECT(out_as("a.json"), "--", "a['status'] == 'requirement_failed' and a['finished'] and a['verdict'] == 'fail'",
            "a['errors'] == ['the result fails 1 of 3 requirements']");
