@@ -441,26 +441,47 @@ static void choose_best(hf_merged *m)
 
 /* ---- columns of the requirements ---- */
 
-/* Returns whether the column of row a stands before that of row b. n_decided: points that each row decides. */
-static bool is_before(const hf_merged *m, const int *n_decided, int a, int b)
+int hf_merged_failing(const hf_merged *m, int row, int *n_judged)
 {
-    if (n_decided[a] != n_decided[b] || m->best < 0) return n_decided[a] > n_decided[b];
+    int n_failed = 0;
+    *n_judged = 0;
+    for (int i = 0; i < m->n; i++) {
+        hf_verdict verdict = hf_merged_is_done(m, i) ? verdict_of(m, i, row) : HF_VERDICT_NONE;
+        n_failed += verdict == HF_VERDICT_FAIL;
+        *n_judged += verdict != HF_VERDICT_NONE;
+    }
+    return n_failed;
+}
+
+/* Points that a row fails, and points that it decides. */
+typedef struct {
+    int n_failed, n_decided;
+} row_counts;
+
+/* Returns whether the column of row a stands before that of row b. */
+static bool is_before(const hf_merged *m, const row_counts *of, int a, int b)
+{
+    if (of[a].n_failed != of[b].n_failed) return of[a].n_failed > of[b].n_failed;
+    if (of[a].n_decided != of[b].n_decided || m->best < 0) return of[a].n_decided > of[b].n_decided;
     const double *margin = m->row_relative_margin.value + (size_t)m->best * (size_t)m->n_row;
     return margin[a] < margin[b] || (isnan(margin[b]) && !isnan(margin[a]));
 }
 
 int hf_merged_required(const hf_merged *m, int row[HF_REQUIREMENT_ROWS_MAX])
 {
-    int n_decided[HF_REQUIREMENT_ROWS_MAX] = {0}, n = 0;
+    row_counts of[HF_REQUIREMENT_ROWS_MAX] = {{0}};
+    int n = 0, n_judged;
     bool is_whole = m->row_value.n == m->n && m->row_at_least.n == m->n && m->row_at_most.n == m->n, has_any = false;
     if (!is_whole || m->n_row > HF_REQUIREMENT_ROWS_MAX) return 0;
     for (int i = 0; i < m->n * m->n_row; i++)
         has_any |= !isnan(m->row_value.value[i]) && hf_merged_is_done(m, i / m->n_row);
+    for (int k = 0; k < m->n_row; k++)
+        of[k].n_failed = hf_merged_failing(m, k, &n_judged);
     for (int i = 0; i < m->n; i++)
-        if (m->judgement[i].tightest >= 0) n_decided[m->judgement[i].tightest]++;
+        if (m->judgement[i].tightest >= 0) of[m->judgement[i].tightest].n_decided++;
     for (; n < m->n_row && has_any; n++) {
         int k = n;
-        for (; k > 0 && is_before(m, n_decided, n, row[k - 1]); k--)
+        for (; k > 0 && is_before(m, of, n, row[k - 1]); k--)
             row[k] = row[k - 1];
         row[k] = n;
     }

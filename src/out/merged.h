@@ -95,9 +95,12 @@ int hf_merged_improves_on(const hf_merged *merged, int axis);
 /* Returns whether any point has a verdict. The points then rank by their verdicts first. */
 bool hf_merged_is_judged(const hf_merged *merged);
 
-/* Sets row[n_row] to the requirements in the order of their columns: first those that decide the most points
- * (hf_merged_judgement.tightest), among equals those with the smallest relative margin at the best point. Returns
- * n_row, or 0 if no point has a value of a requirement. */
+/* Returns the number of points at which a requirement fails. *n_judged: number of points at which it has a verdict. */
+int hf_merged_failing(const hf_merged *merged, int row, int *n_judged);
+
+/* Sets row[n_row] to the requirements in the order of their columns: first those that fail at the most points, then
+ * those that decide the most points (hf_merged_judgement.tightest), then those with the smallest relative margin at the
+ * best point. Returns n_row, or 0 if no point has a value of a requirement. */
 int hf_merged_required(const hf_merged *merged, int row[HF_REQUIREMENT_ROWS_MAX]);
 
 /* Returns the SI unit of a requirement; "" if the file has a figure that this version does not know. */

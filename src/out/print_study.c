@@ -499,6 +499,22 @@ static size_t add_interval(const column *c, const hf_merged_interval *in, bool i
     return (size_t)n < size ? (size_t)n : size - 1;
 }
 
+/* Appends the rows that fail at all points: "; at every point fails: mass". */
+static size_t add_failing(const hf_merged *m, char *text, size_t size)
+{
+    size_t used = 0;
+    int n = 0, n_judged;
+    for (int row = 0; row < m->n_row; row++) {
+        int n_failed = hf_merged_failing(m, row, &n_judged);
+        if (n_failed == 0 || n_failed < n_judged || used >= size / 2) continue;
+        used += (size_t)snprintf(text + used, size - used, "%s%.*s", n++ ? "; " : "; at every point fails: ", NAME_MOST,
+                                 hf_texts_at(&m->row_name, row));
+        hf_text_trim_utf8(text);
+        used = strlen(text);
+    }
+    return used;
+}
+
 const char *hf_print_study_advice(const hf_merged *m, char text[HF_PRINT_ADVICE_SIZE])
 {
     int count[HF_VERDICT_N] = {0};
@@ -510,6 +526,7 @@ const char *hf_print_study_advice(const hf_merged *m, char text[HF_PRINT_ADVICE_
     int n_pass = count[HF_VERDICT_PASS];
     size_t used = (size_t)snprintf(text, HF_PRINT_ADVICE_SIZE, n_pass ? "%d of %d points pass%s" : "no point passes",
                                    n_pass, m->n, n_pass == 1 ? "es" : "");
+    if (!n_pass) used += add_failing(m, text + used, HF_PRINT_ADVICE_SIZE - used);
     for (int a = 0; a < m->n_axis; a++) {
         int n = hf_merged_axis_varies(m, a) ? hf_merged_passing(m, a, interval, INTERVALS_MOST) : 0;
         column c = axis_column(m, a);
@@ -584,7 +601,7 @@ static void print_same(const table *t, FILE *f)
     end_items(&line);
 }
 
-/* Adds whether the best point passes. If it does not, then no point passes. */
+/* Adds whether the best point passes. */
 static void add_verdict(const hf_merged *m, items *line)
 {
     const hf_merged_judgement *j = &m->judgement[m->best];
@@ -592,10 +609,10 @@ static void add_verdict(const hf_merged *m, items *line)
     if (j->verdict == HF_VERDICT_PASS)
         snprintf(text, sizeof text, "passes");
     else if (j->verdict == HF_VERDICT_FAIL)
-        snprintf(text, sizeof text, "no point passes; the best fails %d of %d", j->of.n_failed, j->of.n_required);
+        snprintf(text, sizeof text, "fails %d of %d", j->of.n_failed, j->of.n_required);
     else
-        snprintf(text, sizeof text, "no point passes; of the best %d of %d %s undecided", j->of.n_undecided,
-                 j->of.n_required, j->of.n_undecided == 1 ? "is" : "are");
+        snprintf(text, sizeof text, "%d of %d %s undecided", j->of.n_undecided, j->of.n_required,
+                 j->of.n_undecided == 1 ? "is" : "are");
     add_item(line, text);
 }
 
