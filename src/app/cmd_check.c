@@ -144,10 +144,11 @@ static void print_variables(const hf_check *c, FILE *f)
 /* Prints the as-built nets over which an objective is taken. */
 static void print_nets(const hf_objective_settings *s, FILE *f)
 {
-    bool takes_all = hf_objective_takes_load_cases(s);
+    bool takes_all = hf_objective_takes_load_cases(s), takes_samples = s->over == HF_OVER_SAMPLES;
     if (*s->load_case && !takes_all) fprintf(f, ", in load case %s", s->load_case);
-    if (!takes_all && s->over == HF_OVER_DESIGN) return;
-    fprintf(f, " over %s, ", takes_all ? "all load cases" : hf_over_word[s->over]);
+    if (!takes_all && !takes_samples) return;
+    fprintf(f, " over %s%s%s, ", takes_all ? "all load cases" : "", takes_all && takes_samples ? " of " : "",
+            takes_samples ? hf_over_word[s->over] : "");
     if (s->quantile > 0)
         fprintf(f, "quantile %g", s->quantile);
     else
@@ -161,7 +162,7 @@ static void print_cost_of_nets(const hf_check *c, FILE *f)
     fprintf(f, "                each design is cut and solved as %d net%s as built", c->n_net,
             c->n_net == 1 ? "" : "s");
     if (c->n_sample)
-        fprintf(f, ", %d of them samples, seed %llu", c->n_sample,
+        fprintf(f, ", %d of them from %d samples, seed %llu", c->n_sample, c->problem.objectives.nets->n_sample,
                 (unsigned long long)c->problem.settings.tolerance.seed);
     fputc('\n', f);
 }

@@ -50,8 +50,9 @@ static void show_samples(FILE *f, const hf_run_progress *now)
 
 static void show_generation(FILE *f, const hf_run_progress *now)
 {
-    fprintf(f, "generation %d/%d  best psi %.4f mm  %.0f evaluations/s  at most %s left", now->generation,
-            now->generations, now->best_psi_m * 1e3, rate_per_s(now), hf_print_duration(left_s(now)).text);
+    fprintf(f, "generation %d/%d  ", now->generation, now->generations);
+    if (isfinite(now->best_psi_m)) fprintf(f, "best psi %.4f mm  ", now->best_psi_m * 1e3);
+    fprintf(f, "%.0f evaluations/s  at most %s left", rate_per_s(now), hf_print_duration(left_s(now)).text);
 }
 
 static void show_step(FILE *f, const hf_run_progress *now)

@@ -166,7 +166,16 @@ static void check_truss_heat(const hf_case *c, hf_config_faults *f)
     }
 }
 
-/* Reports errors of load cases that no sample has. Samples are only solved in the load cases of rows with a share. */
+/* Returns true if one of n objectives is measured on samples in load cases. */
+static bool has_sampled_load_case(const hf_objective_settings *objective, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (objective[i].over == HF_OVER_SAMPLES && *objective[i].load_case) return true;
+    return false;
+}
+
+/* Reports errors of load cases that no sample has. Samples are only solved in the load cases of rows with a share and
+ * of objectives. */
 static void check_load_errors(const hf_case *c, hf_config_faults *f)
 {
     const struct {
@@ -175,12 +184,16 @@ static void check_load_errors(const hf_case *c, hf_config_faults *f)
     } of[] = {{"tolerance.sigma_load_case_temperature_K", c->tolerance.sigma_load_case_temperature_K},
               {"tolerance.sigma_gravity_ratio", c->tolerance.sigma_gravity_ratio},
               {"tolerance.sigma_force_ratio", c->tolerance.sigma_force_ratio}};
+    const hf_optimize_settings *o = &c->optimize;
     if (!hf_config_is_read(c, "requirements")) return;
+    if (has_sampled_load_case(o->term, o->n_term) || has_sampled_load_case(o->front, o->n_front)) return;
     for (int i = 0; i < c->n_requirement; i++)
         if (!isnan(c->requirement[i].share) && strcmp(c->requirement[i].load_case, "nominal") != 0) return;
     for (size_t k = 0; k < sizeof of / sizeof *of; k++)
         if (of[k].sigma > 0)
-            hf_config_fault_of(f, of[k].key, "has no effect: no row of `requirements` has a share and a load_case");
+            hf_config_fault_of(
+                f, of[k].key,
+                "has no effect: no row of `requirements` with a share and no objective over samples has a load_case");
 }
 
 static void check_tolerance(const hf_case *c, hf_config_faults *f)

@@ -248,8 +248,26 @@ static void time_tolerance(hf_check *c)
     c->at_most_s += c->yields_s;
 }
 
-/* Evaluates the first generation in one thread. The time of the whole search is that of one design, times the designs
- * per thread, times the maximum number of generations. */
+/* Evaluates designs of the first generation in one thread: first one, then more while they are expected to end within
+ * TRIAL_MOST_S. Returns the processor time of a design, s. */
+static double time_design(hf_batch *batch, const hf_population *ga)
+{
+    int n_most[] = {1, HF_LANES, ga->n_individual}, n_done = 0;
+    double design_s = 0;
+    for (int i = 0; i < 3; i++) {
+        int n = n_most[i] < ga->n_individual ? n_most[i] : ga->n_individual;
+        if (design_s > 0) n = (int)fmin(n, TRIAL_MOST_S / design_s);
+        if (n <= n_done) continue;
+        double begin_s = hf_clock_thread_cpu_s();
+        hf_batch_run(batch, n, ga->design, ga->pending, ga->result);
+        design_s = (hf_clock_thread_cpu_s() - begin_s) / n;
+        n_done = n;
+    }
+    return design_s;
+}
+
+/* The time of the whole search is that of one design, times the designs per thread, times the maximum number of
+ * generations. */
 static hf_status time_search(hf_check *c, const hf_evaluator *v, const hf_population *ga)
 {
     const hf_optimize_settings *o = &c->problem.settings.optimize;
@@ -258,9 +276,7 @@ static hf_status time_search(hf_check *c, const hf_evaluator *v, const hf_popula
     hf_status status = hf_batch_create(v, 1, &batch);
     if (status == HF_OK) {
         c->solver = hf_batch_share(&batch, c->problem.initial);
-        double begin_s = hf_clock_thread_cpu_s();
-        hf_batch_run(&batch, ga->n_individual, ga->design, ga->pending, ga->result);
-        c->design_s = (hf_clock_thread_cpu_s() - begin_s) / ga->n_individual;
+        c->design_s = time_design(&batch, ga);
         c->search_s = hf_check_together_s(c->design_s, o->population, &threads) * o->generations;
         c->at_most_s += c->search_s;
     }

@@ -503,11 +503,15 @@ static hf_status check_facets(const hf_problem *p, hf_messages *messages)
         if (isnan(m.facet_half_path_rms_m)) HF_TRY(hf_facet_measure(&p->surface, &p->facets, &target, &m));
         double rms_m = r->feed == HF_REFOCUSED ? m.facet_fit_half_path_rms_m : m.facet_half_path_rms_m;
         if (!(rms_m > r->at_most)) continue;
-        hf_warning(messages,
-                   "%s: at the target positions, the facets already have %.4g mm, and the bound is %.4g mm. Use about "
-                   "%.0f facets instead of %d, or loosen the bound",
-                   hf_config_place(&p->settings, place, "requirements.%d", i), rms_m * 1e3, r->at_most * 1e3,
-                   ceil(p->facets.n_facet * rms_m / r->at_most), p->facets.n_facet);
+        char more[64] = "";
+        if (r->at_most > 0)
+            snprintf(more, sizeof more, "Use about %.0f facets instead of %d, or loosen",
+                     ceil(p->facets.n_facet * rms_m / r->at_most), p->facets.n_facet);
+        hf_warning(
+            messages,
+            "%s: at the target positions, the facets already have %.4g mm, and the bound is %.4g mm. %s the bound",
+            hf_config_place(&p->settings, place, "requirements.%d", i), rms_m * 1e3, r->at_most * 1e3,
+            *more ? more : "Loosen");
     }
     return HF_OK;
 }
@@ -516,7 +520,7 @@ hf_status hf_feasible_check(const hf_problem *p, const hf_problem_source *source
                             hf_messages *messages)
 {
     hf_feasible_bound bound[HF_FEASIBLE_BOUNDS_MAX];
-    hf_required required;
+    hf_required required = {0};
     hf_material masses = {0};
     hf_status status = hf_requirements_stage_rows(p, &masses, &required, messages);
     if (status == HF_OK)

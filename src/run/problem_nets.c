@@ -203,7 +203,7 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
     bool is_over_samples = !isnan(r->share), is_length = !strcmp(unit, "m");
     double times = is_length ? 1e3 : 1;
     if (is_length) unit = "mm";
-    if (is_over_samples && hf_required_has_two_bounds(r)) {
+    if (is_over_samples && hf_required_has_two_bounds(r) && r->figure != HF_REQUIRED_GAIN) {
         times = 100 / c->unit[worst];
         unit = "%";
     }

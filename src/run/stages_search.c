@@ -105,6 +105,7 @@ static void sum_up_generations(const search *q)
 static void tell_generation(const search *q)
 {
     const hf_population *p = &q->told;
+    bool is_front = q->run->problem.settings.optimize.n_front > 0; /* which has no best design */
     hf_run_report(&q->run->request->control,
                   (hf_run_progress){.phase = HF_RUN_SEARCH,
                                     .generation = p->generation + 1,
@@ -112,7 +113,7 @@ static void tell_generation(const search *q)
                                     .first_generation = q->first_generation,
                                     .is_last = p->stop_reason != HF_POPULATION_RUNNING,
                                     .evaluations = p->n_evaluation - q->first_evaluation,
-                                    .best_psi_m = p->best_psi_m[p->generation],
+                                    .best_psi_m = is_front ? (double)NAN : p->best_psi_m[p->generation],
                                     .merit = NAN,
                                     .elapsed_s = q->summary->stage[HF_STAGE_SEARCH].wall_s - q->earlier_wall_s});
 }

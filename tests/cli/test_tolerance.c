@@ -285,7 +285,9 @@ START_TEST(faults_are_named)
          "6:22: tolerance.sigma_force_ratio: no load case has forces, so this error has no effect. Add force_N to a "
          "row"},
         {"  sigma_force_ratio: 0.1\nload_cases: [{name: blown, force_N: [0, 0, 0.1]}]\n",
-         "6:22: tolerance.sigma_force_ratio: has no effect: no row of `requirements` has a share and a load_case"},
+         "6:22: tolerance.sigma_force_ratio: has no effect: no row of `requirements` with a share and no objective "
+         "over "
+         "samples has a load_case"},
         {"  sigma_temperature_K: 30\n  sigma_cut_ratio: 0.028\ncables: [{expansion_per_K: 1e-3}]\n",
          "6:24: tolerance.sigma_temperature_K: cable '"},
     };
