@@ -180,8 +180,8 @@ START_TEST(points_rank_by_their_requirements)
 }
 END_TEST
 
-/* Five requirements have a column: those that decide points, then those that are tightest at the best point. --verbose
- * shows all. */
+/* Five requirements have a column: those that fail, then those that decide points, then those that are tightest at the
+ * best point. --verbose shows all. */
 START_TEST(the_tightest_requirements_have_columns)
 {
     const char *path = file_with(
@@ -196,7 +196,7 @@ START_TEST(the_tightest_requirements_have_columns)
     OUT("\n  columns       the 5 tightest of 7 requirements; --verbose: all, and other figures, such as psi\n");
     HIFDM(0, "show", temp("s.h5"), "--verbose");
     EXPECT(temp("s.h5"), data_of(temp("s.html"), "p.json"), shown, out_as("all.txt"), "--",
-           "[r['name'] for r in b['study']['required']] == ['tension of front', 'tension of tie', 'ratio', 'psi', "
+           "[r['name'] for r in b['study']['required']] == ['tension of tie', 'tension of front', 'ratio', 'psi', "
            "'tension "
            "of front', 'slack_cables', 'loose_nodes']",
            "'slack_cables' not in c.decode() and 'loose_nodes' not in c.decode()",

@@ -108,6 +108,9 @@ START_TEST(a_failure_without_relative_margin_counts)
     char text[HF_PRINT_RANKING_SIZE];
     merge_points(point, N_ROW, &m);
     ck_assert_int_eq(m.best, 4); /* of equal margins, that with the smaller psi */
+    int row[HF_REQUIREMENT_ROWS_MAX];
+    ck_assert_int_eq(hf_merged_required(&m, row), N_ROW);
+    ck_assert(row[0] == 2 && row[1] == 0 && row[2] == 1); /* that which fails, then that which decides points */
     ck_assert_str_eq(hf_print_study_tightest(&m, 0, text), "slack_cables -2");
     ck_assert_str_eq(advice_of(&m), "2 of 5 points pass: pretension at the point 3 N, and at the point 5 N");
     hf_merged_free(&m);
