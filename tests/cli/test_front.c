@@ -146,7 +146,7 @@ static bool says_tolerance(const char *err)
 /* A session that is told to stop while the points are judged leaves the front, and the next one only judges it. */
 START_TEST(a_front_survives_an_interrupt_while_it_is_judged)
 {
-#define MANY FRONT, SHARES, "--set", "tolerance.samples=6000", "--progress", "jsonl", "-o"
+#define MANY FRONT, SHARES, "--set", "tolerance.samples=1500", "--progress", "jsonl", "-o"
     const char *path = temp("f.h5"), *whole = temp("whole.h5");
     const char *const argv[] = {hifdm_program(), "run", MANY, path, NULL};
     session s = start_program(argv);
