@@ -192,9 +192,9 @@ fuzz-results: ## FUZZ_N damaged result files against every command that reads on
 	$(SUB) BUILD=build/asan SANITIZE=address,undefined CFLAGS='-O2 -g' WERROR= build/asan/hifdm
 	$(PYTHON) tests/fuzz/fuzz_results.py --program build/asan/hifdm --n $(FUZZ_N) --seed $(FUZZ_SEED)
 
-# Tries twenty times as many nets as `make test`, and ten times as many kills.
-stress: ## the numerical-stability suite and the killed runs at full length
-	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE="stress cli/resume"
+# Tries twenty times as many nets as `make test`, ten times as many kills, and each failing call.
+stress: ## the numerical-stability suite, killed runs and failing calls at full length
+	+$(Q)HIFDM_STRESS=1 CK_DEFAULT_TIMEOUT=1800 $(MAKE) test SUITE="stress cli/resume store_calls"
 
 # RUNS=20 is the number of runs. CLONE=yes adds one in a fresh clone. SUITE=... is as for test.
 test-under-load: ## the tests again and again beside a busy loop on every core
@@ -238,10 +238,11 @@ paper paper-check:
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/paper.py --program $(PROGRAM) --work $(BUILD)/paper $(PAPER_DO) $(PAPER_OUT)
 
-paper-search: ## search for the paper's net anew (some minutes): writes configs/chen2022-search*.yaml
+paper-search: ## search for the paper's net anew (an hour): configs/chen2022-search*.yaml, results/chen2022/dense*.csv
 	$(Q)tools/setup.sh --test
 	$(SUB) $(PROGRAM)
 	$(PYTHON) tools/paper/search.py --program $(PROGRAM) --work $(BUILD)/paper-search
+	$(PYTHON) tools/paper/dense.py --program $(PROGRAM) --work $(BUILD)/paper-search
 
 # LITERAL_ROUNDS=... is the number of interleaved runs of each.
 LITERAL_ROUNDS ?= 7
@@ -278,13 +279,16 @@ bench-instructions: ## instructions of three cases on one thread against results
 	    --table results/bench/instructions.csv $(if $(RECORD),--record) $(CASES)
 
 # Results are the same on every processor, except for what pagmo's mathematics makes of last bits.
+# OPTIMISER_ONLY=TEXT runs only the nets with this text in their name and keeps the rows of the others, so that the
+# benchmark can run in parts, one after another.
 OPTIMISER_SEEDS ?= 7
-bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: results/bench/optimisers.* (10 minutes)
+OPTIMISER_ONLY ?=
+bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: results/bench/optimisers* (1 hour)
 	$(Q)tools/setup.sh --optimisers
 	$(SUB) $(PROGRAM) $(PEERS)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/optimisers/run.py --driver $(PEERS) --program $(PROGRAM) --seeds $(OPTIMISER_SEEDS) \
-	    --out $(BENCH_OUT)
+	    --only $(call quote,$(OPTIMISER_ONLY)) --out $(BENCH_OUT)
 
 bench-fronts: ## fronts of two and three objectives beside pagmo's NSGA-II: results/bench/fronts.csv (2 minutes)
 	$(Q)tools/setup.sh --optimisers

@@ -15,7 +15,7 @@ heap_files="base/status base/arena base/text base/csv linalg/lapack net/scene ne
             store/store_look store/layout store/layout_truss store/layout_stage store/layout_front
             store/layout_tolerance store/renamed store/summary store/ledger store/merge
             run/problem run/problem_parts run/run run/stages_[a-z]* run/load_case_stage run/requirements_stage
-            run/tolerance_stage run/take_point run/flat run/sweep out/merged out/report_required
+            run/tolerance_stage run/take_point run/flat run/sweep out/merged out/merged_groups out/report_required
             app/options app/cmd_evaluate"
 # may print (csv, json, summary: to a given stream)
 print_files="base/csv base/json store/summary out/[a-z_]* app/cmd_[a-z_]* app/progress app/main"

@@ -8,6 +8,7 @@
  *   hf_flat_open, or arrays of a net and hf_flat_open_net   case -> model
  *   hf_flat_form                                            shape of the case
  *   hf_flat_evaluate, hf_flat_shape, hf_flat_slopes         designs -> figures, one shape, derivatives
+ *   hf_flat_residuals, hf_flat_vjp                          design -> residuals, their derivatives and products
  *   hf_flat_free
  *
  * hf_flat_run executes a complete run and does not need hf_flat_form. The functions hf_flat_text, hf_flat_ints and
@@ -95,6 +96,7 @@ int hf_flat_open_net(hf_flat *flat, const char *name, const char *text, int n_se
  *   result, result_unit, result_help        figures of a shape: the reals "result"
  *   result_kind                             "real", "int", or the list of its words ("status", "stop_reason", ...)
  *   slope                                   figures that have derivatives
+ *   block                                   blocks of the residuals of a design (hf_problem_block)
  *   summary                                 i = 0: JSON object of hifdm run --json, for the last hf_flat_run */
 const char *hf_flat_text(hf_flat *flat, const char *list, int i);
 
@@ -103,6 +105,7 @@ const char *hf_flat_text(hf_flat *flat, const char *list, int i);
  *
  *   end [n_cable][2], role [n_node], group, law [n_cable]
  *   variable_cable [n_variable]     cable of each design variable; -1: the variable displaces a support
+ *   block_rows [n_block]            number of rows of each block of residuals
  *   variable_leader [n_variable]    design variable that each one follows by symmetry, or the variable itself
  *   set_start [n_set + 1], set_cable */
 int hf_flat_ints(const hf_flat *flat, const char *name, int *to);
@@ -140,6 +143,16 @@ int hf_flat_shape(hf_flat *flat, const double *design);
  * Writes the derivatives to the array slope [n][n_slope][n_variable]. The derivatives of infeasible designs are NaN.
  * Returns the same status codes as hf_flat_evaluate, and HF_BAD_CASE if there are no derivatives. */
 int hf_flat_slopes(hf_flat *flat, int n, const double *design, double *slope);
+
+/* Computes the residuals of one design [n_variable] and their derivatives (hf_problem_residuals). Bit i of the argument
+ * `blocks` selects block i. The array residual [n_row] and, unless it is NULL, the array jacobian [n_row][n_variable]
+ * receive the rows of the selected blocks. Returns the same status codes as hf_flat_slopes. If the design has no shape,
+ * returns the status of the design. */
+int hf_flat_residuals(hf_flat *flat, const double *design, int blocks, double *residual, double *jacobian);
+
+/* Computes product [n_variable], the product of the transposed Jacobian of the selected blocks and vector [n_row]
+ * (hf_problem_vjp). The rules of hf_flat_residuals apply. */
+int hf_flat_vjp(hf_flat *flat, const double *design, int blocks, const double *vector, double *product);
 
 /* Receives the progress of a run. If the observer returns a value other than 0, the run stops. The argument `phase` is
  * a code of the list "phase". The arguments `done` and `all` count generations, samples, steps of Levenberg-Marquardt

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <hifdm/api.h>
+#include <hifdm/evaluate.h>
 #include <hifdm/population.h>
 
 HF_API_BEGIN
@@ -55,6 +56,7 @@ typedef struct {
     const hf_optimiser_kind *kind; /* functions of the optimiser; NULL: the optimiser cannot propose designs */
     const hf_optimize_settings *settings; /* settings of the search; borrowed */
     void *state;                          /* state that the functions of the optimiser use */
+    struct hf_repair *repair;             /* internal: moves proposals into the limits; NULL: does not */
     bool is_fresh; /* internal: the generation has been proposed, but hf_optimiser_tell has not been called for it */
 } hf_optimiser;
 
@@ -64,6 +66,13 @@ typedef struct {
  * hf_optimiser_create fails. */
 hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_settings *settings,
                               const hf_model *model, const double *initial, hf_optimiser *optimiser);
+
+/* Makes the optimiser move its proposals into the limits and below the cap of this evaluator before they are evaluated.
+ * The move follows a linear model of the limited values at the best design of each generation. If the case has no
+ * derivatives or no limits, or if such a model takes longer than a generation, this function has no effect. The
+ * optimiser borrows the evaluator until hf_optimiser_free is called. Call the function before the first call of
+ * hf_optimiser_next. Returns HF_OK or HF_NO_MEMORY. */
+hf_status hf_optimiser_repair(hf_optimiser *optimiser, const hf_evaluator *evaluator);
 
 /* Reads the results that the caller has written to population.result. Selects the survivors and ranks them
  * (hf_population_rank). */
@@ -107,13 +116,24 @@ typedef enum {
 } hf_refine_stop;
 extern const char *const hf_refine_stop_word[5]; /* "converged", "stalled", "max_iterations", "settled", "taken" */
 
+/* HF_OPTIMA_MAX is the maximum number of refinements of one run. */
+#define HF_OPTIMA_MAX 8
+
+/* Contains the distinct local optima that the refinements of a run found, best first. Two optima are distinct if their
+ * shapes are. */
+typedef struct {
+    int n;                       /* number of distinct optima */
+    int count[HF_OPTIMA_MAX];    /* [n] number of refinements that found the optimum */
+    double merit[HF_OPTIMA_MAX]; /* [n] merit of the optimum: psi (m) if there are no objectives */
+} hf_optima;
+
 /* Each row X(method, optimiser of its generations or `none`, ends_with_refine) describes one hf_optimize_method. */
-#define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true)
+#define HF_OPTIMISER_LIST(X) X(GA, ga, false) X(LM, none, true) X(GA_LM, ga, true) X(AUTO, ga, true)
 
 /* Algorithms that a method uses. */
 typedef struct {
     const hf_optimiser_kind *kind; /* optimiser of the generations; NULL: the method has none */
-    bool ends_with_refine;         /* true: the refined design is the result; false: it is only for comparison */
+    bool ends_with_refine;         /* true: always refined; false: as optimize.refine states */
 } hf_optimiser_plan;
 
 /* Returns the algorithms of settings->method. If the case has optimize.front, hf_optimiser_nsga replaces

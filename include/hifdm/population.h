@@ -44,6 +44,7 @@ typedef struct {
     /* [n_individual][2] indices of the parents in the previous generation; -1: none. The pair (k, -1) means that
      * individual k of the previous generation was kept. */
     int *parent;
+    bool is_moved; /* true: the journal must contain the designs, because hf_optimiser_repair has moved some of them */
 
     /* hf_optimiser_tell writes the following arrays. The arrays describe each proposed design, whether or not it
      * survived. */

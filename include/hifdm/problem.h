@@ -93,6 +93,41 @@ hf_status hf_problem_slopes(hf_problem *problem, int n, const double *design, co
  * derivatives. */
 hf_status hf_problem_has_slopes(const hf_problem *problem, hf_messages *messages);
 
+/* ---- Residuals ----
+ *
+ * The residuals of a design form blocks of rows. Each objective has a block of weighted residuals with the name of the
+ * objective (hf_objectives_name). The merit is the norm of all these residuals. Without objectives, the only block of
+ * this kind is "psi_m", whose norm is psi. The last two blocks contain the shape:
+ *
+ *   position_m [n_node][3]   positions of all nodes in the order of the scene, m
+ *   tension_N [n_cable]      tensions of all cables, N
+ *
+ * The argument `blocks` selects blocks: bit i selects block i. The rows of the selected blocks follow each other in the
+ * order of the blocks. */
+
+/* Returns the number of rows of block i_block and writes the name of the block to `name`. Returns -1 if there is no
+ * such block. */
+int hf_problem_block(const hf_problem *problem, int i_block, char name[HF_OBJECTIVE_NAME_SIZE]);
+/* Returns the bits of the blocks whose residuals have the merit as their norm: all blocks except the last two. */
+unsigned hf_problem_objective_blocks(const hf_problem *problem);
+
+/* Computes the residuals of one design and their exact derivatives (METHOD section 7). The array design [n_variable]
+ * contains the values of the design variables. Design variables of cables must have values above 0. The array residual
+ * [n_row] receives the residuals of the selected blocks. The array jacobian [n_row][n_variable] receives their
+ * derivatives with respect to each single design variable. If `jacobian` is NULL, the function computes no derivatives.
+ * A design that violates only limits has residuals. The function overwrites problem->workspace. Returns HF_OK. If the
+ * design has no shape, returns the status of hf_evaluate. If an objective has no value, returns HF_NOT_FINITE. If the
+ * designs have no derivatives (hf_problem_has_slopes), returns HF_BAD_CASE. Can also return HF_NO_MEMORY. If the
+ * function fails, it adds an error message. */
+hf_status hf_problem_residuals(hf_problem *problem, const double *design, unsigned blocks, double *residual,
+                               double *jacobian, hf_messages *messages);
+
+/* Computes product [n_variable], the product of the transposed Jacobian of the selected blocks and vector [n_row]. All
+ * other rules of hf_problem_residuals apply. The function stores one column of the Jacobian of the shape at a time. It
+ * needs the same number of solves as the Jacobian: one for each design variable. */
+hf_status hf_problem_vjp(hf_problem *problem, const double *design, unsigned blocks, const double *vector,
+                         double *product, hf_messages *messages);
+
 /* Frees all members of the problem. */
 void hf_problem_free(hf_problem *problem);
 

@@ -18,7 +18,7 @@ HF_API_BEGIN
 typedef enum { HF_METHOD_HIFDM, HF_METHOD_ITERATIVE_FDM, HF_METHOD_FDM, HF_METHOD_NEWTON, HF_METHOD_AUTO } hf_method;
 /* Each row X(enumerator, word) defines a method of the optimisation (optimize.method). Each row of HF_OPTIMISER_LIST
  * states the optimiser of one method. */
-#define HF_OPTIMIZE_METHODS(X) X(GA, "ga") X(LM, "lm") X(GA_LM, "ga+lm")
+#define HF_OPTIMIZE_METHODS(X) X(GA, "ga") X(LM, "lm") X(GA_LM, "ga+lm") X(AUTO, "auto")
 #define HF_OPTIMIZE_ENUMERATOR(name, word) HF_OPTIMIZE_##name,
 /* The key optimize.method selects the method of the optimisation. */
 typedef enum { HF_OPTIMIZE_METHODS(HF_OPTIMIZE_ENUMERATOR) HF_OPTIMIZE_N_METHOD } hf_optimize_method;
@@ -36,7 +36,7 @@ typedef enum { HF_STOP_RESIDUAL, HF_STOP_RMS_CHANGE } hf_stop_rule;
 typedef enum { HF_RULE_FORCE_DENSITY, HF_RULE_TENSION, HF_RULE_SEEDED } hf_rule;
 /* The key coupling.scheme selects the scheme that couples net and truss (METHOD section 8). */
 typedef enum { HF_COUPLING_ACCELERATED, HF_COUPLING_PLAIN, HF_COUPLING_AUTO } hf_coupling_scheme;
-/* The key optimize.refine states whether Levenberg-Marquardt runs for comparison after the method `ga`. */
+/* The key optimize.refine states whether Levenberg-Marquardt refines the best design of the method `ga`. */
 typedef enum { HF_REFINE_AUTO, HF_REFINE_TRUE, HF_REFINE_FALSE } hf_refine_choice;
 /* The key optimize.variation selects the method by which the genetic algorithm makes children. */
 typedef enum { HF_VARIATION_DIFFERENCE, HF_VARIATION_CHAIN } hf_variation;
@@ -226,7 +226,7 @@ typedef struct {
     double stagnation_tolerance_m;       /* the generations end if the best merit improves by less than this value */
     int stagnation_generations;          /* number of generations over which this improvement is measured */
     int refine_steps;                    /* maximum number of steps of Levenberg-Marquardt */
-    hf_refine_choice refine;             /* use of Levenberg-Marquardt for comparison after method ga */
+    hf_refine_choice refine;             /* use of Levenberg-Marquardt after method ga */
     hf_symmetry symmetry;                /* mirror planes that link design variables */
     hf_keep store;                       /* individuals that a result file keeps */
     int store_every;                     /* HF_KEEP_EVERY: the file keeps generations 0, n, 2n, ... */

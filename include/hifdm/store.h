@@ -42,13 +42,14 @@
  *                (index into /scene/node) [k], direction [k][3]
  *   /search      shape of the best design as in /form, design [k]; attributes: algorithm ("ga", "nsga2"),
  *                HF_SUMMARY_SEARCH_LIST, HF_RESULT_LIST, wall_s; with a truss HF_COUPLING_LIST as coupling_...
- *   /search/population  of g generations of p individuals: design [g][p][k]; evaluated, status, psi_m, residual_N,
- *                inner_tension_ratio, boundary_tension_ratio, iterations, violation, merit, trial_status, trial_psi_m,
- *                crossover_rate, mutation_rate [g][p]; parent [g][p][2]; of a front objective_0, objective_1,
- *                objective_2 [g][p]; best_individual, best_psi_m, best_merit, violation_min, mean_psi_m, worst_psi_m,
- *                n_infeasible [g]; attributes n_individual, n_variable, n_objective, generations_limit, store_every
- *                (0: best, 1: all), from which a run is resumed. With optimize.store best, the rows of [g][p] are those
- *                of the best individual, [g][1]; with every and store_every r, those of generations 0, r, 2r, ...
+ *   /search/population  of g generations of p individuals: design [d][k], each of d designs once; design_row [g][p];
+ *                evaluated, status, psi_m, residual_N, inner_tension_ratio, boundary_tension_ratio, iterations,
+ *                violation, merit, trial_status, trial_psi_m, crossover_rate, mutation_rate [g][p]; parent [g][p][2];
+ *                of a front objective_0, objective_1, objective_2 [g][p]; best_individual, best_psi_m, best_merit,
+ *                violation_min, mean_psi_m, worst_psi_m, n_infeasible [g]; attributes n_individual, n_variable,
+ *                n_objective, generations_limit, store_every (0: best, 1: all), from which a run is resumed. With
+ *                optimize.store best, the rows of [g][p] are those of the best individual, [g][1]; with every and
+ *                store_every r, those of generations 0, r, 2r, ...
  *   /search/population/last  with best and every, the arrays of the last generation [1][p]; attributes n_evaluation,
  *                n_evaluation_infeasible, n_evaluation_above_cap of all generations
  *   /refine      shape of the refinement, or of the selected point of a front, as in /search; attributes:
@@ -203,8 +204,9 @@ hf_status hf_store_restore_refine(hf_store *store, double *wall_s, size_t *n, co
 /* Publishes all results so far. The published file has the visible name and is marked as unfinished. If at_once is
  * true, the function publishes immediately. If at_once is false, the function publishes only if enough time has passed
  * since the last publication. The time between two publications is at least 0.5 s and at least 50 times the duration of
- * the earlier publication. Publishing therefore takes less than 2 % of the run time. Call hf_store_publish after every
- * generation. */
+ * the earlier publication. Publishing therefore takes less than 2 % of the run time. A search also does not publish if
+ * the copy of the file would make hifdm write more than twice the bytes of the final file. Call hf_store_publish after
+ * every generation. */
 hf_status hf_store_publish(hf_store *store, const hf_summary *summary, bool at_once, hf_messages *messages);
 
 /* Writes the shape in the workspace and its design [model->n_variable] for the stage HF_STAGE_SEARCH or

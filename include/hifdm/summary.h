@@ -72,7 +72,7 @@ HF_API_BEGIN
 
 /* This list describes the quantities that only the refinement has. The refinement is Levenberg-Marquardt. */
 #define HF_SUMMARY_REFINE_LIST(X)                                                                                      \
-    X(bool, is_result, FLAG, .json = 2, .description = "its design is the result, not only a comparison")              \
+    X(bool, is_result, FLAG, .json = 2, .description = "its design is the result, not that of the search")             \
     X(int, steps, INT, .json = 1, .description = "steps of Levenberg-Marquardt")                                       \
     X(int, evaluations, INT, .json = 1, .description = "form-findings")                                                \
     X(hf_refine_stop, algorithm_stop, REFINE_STOP, .json = 4, .key = "stop_reason",                                    \
@@ -174,6 +174,7 @@ typedef struct {
     hf_pattern_summary *pattern; /* far field of its shape */
     hf_set_tensions *sets;       /* tensions of the named sets of cables */
     hf_held_limits *held;        /* active constraints of its shape */
+    hf_optima *optima;           /* optima that method `auto` found */
 } hf_stage_summary;
 
 /* The struct hf_search_summary contains the data that only the search has. The struct hf_refine_summary contains the

@@ -258,18 +258,21 @@ static void print_optimisation(const hf_check *c, FILE *f)
     if (c->evolves)
         fprintf(
             f,
-            "                optimisation: rule %s, %d variables, %d individuals, at most %d generations, seed %llu\n",
-            hf_rule_word[o->rule], p->model.n_variable, o->population, o->generations, (unsigned long long)o->seed);
+            "                optimisation: rule %s, %d variables, %d individuals, at most %d generation%s, seed %llu\n",
+            hf_rule_word[o->rule], p->model.n_variable, o->population, o->generations, o->generations == 1 ? "" : "s",
+            (unsigned long long)o->seed);
     if (o->n_front) print_front(c, f);
     print_variables(c, f);
     print_wishes(c, f);
     if (c->refines)
         fprintf(f, "                Levenberg-Marquardt: rule %s, at most %d steps, %s\n", hf_rule_word[o->rule],
                 o->refine_steps,
-                o->n_front                    ? "for each point"
-                : c->is_refine_result         ? "the result"
-                : o->refine == HF_REFINE_AUTO ? "for comparison, where it is cheap"
-                                              : "for comparison");
+                o->n_front                      ? "for each point"
+                : o->method == HF_OPTIMIZE_AUTO ? "from up to four starts; the best design is the result"
+                : !c->evolves                   ? "the result"
+                : c->is_refine_result || o->refine == HF_REFINE_TRUE
+                    ? "the better design is the result"
+                    : "where it is cheap; the better design is the result");
     if (o->symmetry != HF_SYMMETRY_NONE)
         fprintf(f, "                symmetry: %s, %s; %d independent variables of %d\n", hf_symmetry_word[o->symmetry],
                 hf_symmetry_planes_text(p->planes), p->model.n_leader, p->model.n_variable);

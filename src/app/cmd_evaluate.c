@@ -9,6 +9,8 @@
  *      column `id`, the rows are numbered from 1.
  * --jacobian: id,figure and a column per design variable. For every feasible design, the table has the derivatives
  *      of psi_m, or of each objective and of the merit.
+ * --residuals: id,block,row,value and a column per design variable. For every design with a shape, the table has the
+ *      residuals, positions and tensions (hf_problem_residuals), and their derivatives.
  *
  *      case -> form-finding -> table -> batch -> results, and derivatives of feasible designs
  *
@@ -176,6 +178,21 @@ static hf_status differentiate(job *j, hf_messages *messages)
     return hf_problem_slopes(&j->problem, j->table.n_row, j->design, j->result, j->derivative, messages);
 }
 
+/* Computes the residuals residual [n_row] and their derivatives jacobian [n_row][n_variable] of a design. If there are
+ * none, all are NaN. Returns HF_OK or HF_NO_MEMORY. */
+static hf_status find_residuals(job *j, int row, size_t n_row, double *residual, double *jacobian,
+                                hf_messages *messages)
+{
+    size_t n = (size_t)j->problem.model.n_variable;
+    hf_messages said = {0};
+    hf_status status = hf_problem_residuals(&j->problem, j->design + (size_t)row * n, ~0u, residual, jacobian, &said);
+    hf_messages_free(&said);
+    if (status == HF_NO_MEMORY) return no_memory(j, messages);
+    for (size_t i = 0; i < n_row * (n + 1) && status != HF_OK; i++)
+        *(i < n_row ? residual + i : jacobian + i - n_row) = (double)NAN;
+    return HF_OK;
+}
+
 /* ---- writing ---- */
 
 static void write_number(double value, FILE *f)
@@ -259,6 +276,75 @@ static void write_jacobian(const void *context, FILE *f)
     }
 }
 
+/* The table of residuals may be large. It is therefore written while it is computed. */
+typedef struct {
+    job *j;
+    size_t n_row;                /* of one design */
+    double *residual, *jacobian; /* [n_row], [n_row][n_variable] */
+    hf_status status;
+    hf_messages *messages;
+} residual_table;
+
+/* Writes the name of a row of a block: a coordinate of a node, a cable, or the number of a residual. */
+static void write_row_name(const hf_scene *s, const char *block, int row, FILE *f)
+{
+    fputc(',', f);
+    if (!strcmp(block, "tension_N")) {
+        hf_csv_write_id(s->cable_id[row], f);
+    } else if (!strcmp(block, "position_m")) {
+        char name[HF_VARIABLE_NAME_SIZE];
+        snprintf(name, sizeof name, "%s.%c", s->node_id[row / 3], "xyz"[row % 3]);
+        hf_csv_write_id(name, f);
+    } else {
+        fprintf(f, "%d", row + 1);
+    }
+}
+
+static void write_residuals_of(const residual_table *t, int i, FILE *f)
+{
+    const hf_problem *p = &t->j->problem;
+    const double *residual = t->residual, *rate = t->jacobian;
+    char name[HF_OBJECTIVE_NAME_SIZE];
+    for (int block = 0, n; (n = hf_problem_block(p, block, name)) >= 0; block++)
+        for (int row = 0; row < n; row++) {
+            write_row_id(t->j, i, f);
+            fprintf(f, ",%s", name);
+            write_row_name(&p->scene, name, row, f);
+            write_number(*residual++, f);
+            for (int k = 0; k < p->model.n_variable; k++)
+                write_number(*rate++, f);
+            fputc('\n', f);
+        }
+}
+
+static void write_residuals(const void *context, FILE *f)
+{
+    residual_table *t = *(residual_table *const *)context;
+    fputs("id,block,row,value", f);
+    write_variable_names(t->j, f);
+    for (int i = 0; i < t->j->table.n_row && t->status == HF_OK; i++) {
+        if (!hf_status_has_shape(t->j->result[i].status)) continue;
+        t->status = find_residuals(t->j, i, t->n_row, t->residual, t->jacobian, t->messages);
+        if (t->status == HF_OK) write_residuals_of(t, i, f);
+    }
+}
+
+/* Adds the table of residuals to the files. */
+static hf_status add_residuals(job *j, hf_file_out_set *files, const char *path, hf_messages *messages)
+{
+    residual_table table = {.j = j, .messages = messages}, *t = &table;
+    char name[HF_OBJECTIVE_NAME_SIZE];
+    void *block = NULL;
+    for (int i = 0, n; (n = hf_problem_block(&j->problem, i, name)) >= 0; i++)
+        t->n_row += (size_t)n;
+    if (HF_ARENA_ARRAYS(&block, HF_ARRAY(t->residual, t->n_row),
+                        HF_ARRAY(t->jacobian, t->n_row * (size_t)j->problem.model.n_variable)) != HF_OK)
+        return no_memory(j, messages);
+    hf_status status = hf_file_out_set_write(files, path, write_residuals, &t, messages);
+    hf_arena_free_block(block);
+    return status == HF_OK ? t->status : status;
+}
+
 static void write_template(const void *context, FILE *f)
 {
     const job *j = context;
@@ -304,7 +390,7 @@ static void print_best(const job *from, hf_json *j)
     hf_json_close(j, '}');
 }
 
-static void print_json(const job *from, const char *path, const char *jacobian, hf_status status, const char *messages,
+static void print_json(const job *from, const char *path, const hf_options *o, hf_status status, const char *messages,
                        FILE *f)
 {
     hf_json j = {.file = f};
@@ -324,7 +410,8 @@ static void print_json(const job *from, const char *path, const char *jacobian, 
     hf_json_text(&j, "version", hf_store_version());
     hf_json_text(&j, "case", from->problem.settings.path);
     if (status == HF_OK) hf_json_text(&j, "file", path);
-    if (status == HF_OK && jacobian) hf_json_text(&j, "jacobian", jacobian);
+    if (status == HF_OK && o->jacobian) hf_json_text(&j, "jacobian", o->jacobian);
+    if (status == HF_OK && o->residuals) hf_json_text(&j, "residuals", o->residuals);
     hf_json_end(&j, status != HF_OK, messages);
 }
 
@@ -340,17 +427,19 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
                         o->file);
     HF_TRY(hf_output_check(o, &j->problem, o->designs, path, messages));
     HF_TRY(hf_output_check(o, &j->problem, o->designs, o->jacobian, messages));
+    HF_TRY(hf_output_check(o, &j->problem, o->designs, o->residuals, messages));
     HF_TRY(name_columns(j, messages));
     if (o->designs) HF_TRY(read_table(j, o->designs, messages));
     HF_TRY(find_initial(j, messages));
     if (o->template_path) return hf_file_out_write(path, write_template, j, messages);
-    if (o->jacobian) HF_TRY(hf_problem_has_slopes(&j->problem, messages));
+    if (o->jacobian || o->residuals) HF_TRY(hf_problem_has_slopes(&j->problem, messages));
     HF_TRY(evaluate(j, o->threads, messages));
-    static hf_file_out_set files; /* both tables are written, or neither */
+    static hf_file_out_set files; /* all tables are written, or none */
     hf_status status = HF_OK;
     if (o->jacobian) status = differentiate(j, messages);
     if (status == HF_OK && o->jacobian)
         status = hf_file_out_set_write(&files, o->jacobian, write_jacobian, j, messages);
+    if (status == HF_OK && o->residuals) status = add_residuals(j, &files, o->residuals, messages);
     if (status == HF_OK && path) status = hf_file_out_set_write(&files, path, write_results, j, messages);
     status = hf_file_out_set_end(&files, status, messages);
     if (status == HF_OK && !path) write_results(j, file);
@@ -359,16 +448,24 @@ static hf_status execute(job *j, const hf_options *o, const char *path, FILE *fi
 
 static hf_status check_options(const hf_options *o, hf_messages *messages)
 {
+    static const char *const option[] = {"-o", "--jacobian", "--residuals"};
+    static const char *const what[] = {"the table of results", "the table of derivatives"};
+    const char *const path[] = {o->output, o->jacobian, o->residuals};
     if (!o->designs == !o->template_path)
         return hf_error(messages, HF_BAD_USAGE,
                         "'hifdm evaluate' needs either the option --designs FILE or the option --template FILE");
     if (o->template_path && o->output)
         return hf_error(messages, HF_BAD_USAGE, "the options -o and --template cannot be combined");
-    if (o->template_path && o->jacobian)
-        return hf_error(messages, HF_BAD_USAGE, "the option --jacobian needs --designs FILE");
-    if (o->jacobian && o->output && hf_path_will_be_same(o->jacobian, o->output))
-        return hf_error(messages, HF_BAD_USAGE, "the options --jacobian and -o must name different files");
-    if (o->jacobian && o->output) HF_TRY(hf_file_out_spare(o->output, "the table of results", o->jacobian, messages));
+    for (int i = 1; i < 3; i++) {
+        if (o->template_path && path[i])
+            return hf_error(messages, HF_BAD_USAGE, "the option %s needs --designs FILE", option[i]);
+        for (int k = 0; k < i && path[i]; k++) {
+            if (path[k] && hf_path_will_be_same(path[i], path[k]))
+                return hf_error(messages, HF_BAD_USAGE, "the options %s and %s must name different files", option[i],
+                                option[k]);
+            if (path[k]) HF_TRY(hf_file_out_spare(path[k], what[k], path[i], messages));
+        }
+    }
     if (o->designs && o->json && !o->output)
         return hf_error(messages, HF_BAD_USAGE,
                         "the option --json needs -o FILE, because JSON and the table cannot share the standard output");
@@ -389,7 +486,7 @@ static hf_status command_evaluate(const hf_options *options, FILE *file, hf_mess
     const char *path = options->template_path ? options->template_path : options->output;
     hf_status status = execute(&j, options, path, file, messages);
     if (options->json)
-        print_json(&j, path, options->jacobian, status, messages->text, file);
+        print_json(&j, path, options, status, messages->text, file);
     else if (status == HF_OK && path && !options->quiet && options->designs)
         print_summary(&j, path, file);
     else if (status == HF_OK && path && !options->quiet)

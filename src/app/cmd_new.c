@@ -19,9 +19,10 @@ static const char head[] =
     "  EA_boundary_N: 47000\n"
 #define SURFACE "surface:                      # errors of the mesh between the nodes, and what they cost\n"
 #define OPTIMIZE                                                                                                       \
-    "# The genetic algorithm: tensions of the boundary cables, each within range_N, for the minimum psi.\n"            \
+    "# The optimisation: tensions of the boundary cables, each within range_N, for the minimum psi.\n"                 \
     "# Leave this section out for form-finding only.\n"                                                                \
-    "optimize:\n"
+    "optimize:\n"                                                                                                      \
+    "  method: auto                # refinements from several starts; ga: the genetic algorithm alone\n"
 
 static const char paraboloid[] =
     "# A round mesh reflector: a front net on the paraboloid, a rear net behind it, ties between them.\n"
@@ -44,7 +45,7 @@ static const char paraboloid[] =
     "lets\n"
     "# the ties vary until the rest is as small as it gets, so the gain rises. Leave it out for form-finding only.\n"
     "optimize:\n"
-    "  method: lm                  # least squares by derivatives; ga: the genetic algorithm\n"
+    "  method: auto                # least squares from several starts; ga: the genetic algorithm\n"
     "  variables: [{set: tie, vary: force_density, range: 50 %}]   # of the value that each has, either way\n"
     "  objective:\n"
     "    - {figure: facets, feed: refocused, along: half_path}   # error of the facets that a radio wave sees\n"
@@ -79,7 +80,6 @@ static const char cylinder[] =
     "form:\n"
     "  pretension_N: 10\n"
     "\n" OPTIMIZE "  range_N: 1\n"
-    "  generations: 200\n"
     "  seed: 1                     # the same seed gives the same result, to the bit\n"
     "\n" SURFACE "  frequencies_Hz: [1e9]\n";
 
@@ -98,8 +98,7 @@ static const char import[] =
     "\n"
     "form:\n"
     "  pretension_N: 20            # of the cables whose law is tension and whose value is empty\n"
-    "\n" OPTIMIZE "  range_N: 4\n"
-    "  generations: 50\n";
+    "\n" OPTIMIZE "  range_N: 4\n";
 
 static const char nodes[] = "# id: any text. Where the node is in theory (a support: where it is). role: support, "
                             "edge, or inner (psi counts these)\n"

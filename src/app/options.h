@@ -22,7 +22,7 @@ struct hf_options {
     const char *point;                    /* argument of --point */
     const char *export_to[HF_N_EXPORTER]; /* file or folder of each exporter; NULL: not requested */
     const char *designs, *template_path;  /* arguments of --designs and --template */
-    const char *jacobian;                 /* argument of --jacobian */
+    const char *jacobian, *residuals;     /* arguments of --jacobian and --residuals */
     const char *measured;                 /* argument of --measured */
     const char *result;                   /* argument of --result */
     const char *report;                   /* argument of --report */

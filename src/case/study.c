@@ -118,19 +118,23 @@ hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
 {
     double n = 1;
     int n_sampled = 0; /* all sampled axes count as one */
+    const hf_study_axis *first = NULL;
     for (int a = 0; a < s->n_axis; a++) {
         const hf_study_axis *axis = &s->axis[a];
-        if (s->is_zip && axis->n_value != s->axis[0].n_value)
+        if (axis->is_replicate) continue;
+        if (!first) first = axis;
+        if (s->is_zip && axis->n_value != first->n_value)
             return hf_error(messages, HF_BAD_CASE,
                             "%s:%d:%d: sweep.%s: this axis has %d values, but the axis %s has %d values. The setting "
                             "`combine: zip` needs the same number of values on all axes",
-                            s->path, axis->line, axis->column, axis->key.path, axis->n_value, s->axis[0].key.path,
-                            s->axis[0].n_value);
+                            s->path, axis->line, axis->column, axis->key.path, axis->n_value, first->key.path,
+                            first->n_value);
         if (s->is_zip)
             n = axis->n_value;
         else if (!axis->is_sampled || n_sampled++ == 0)
             n *= axis->n_value;
     }
+    if (s->n_replicate) n *= s->n_replicate;
     if (n > HF_STUDY_POINT_MAX)
         return hf_error(messages, HF_BAD_CASE, "%s: sweep: the study has %.10g points, but the maximum is %d points",
                         s->path, n, HF_STUDY_POINT_MAX);
@@ -138,14 +142,16 @@ hf_status hf_study_count_points(hf_study *s, hf_messages *messages)
     return HF_OK;
 }
 
-/* Writes the values of point i. The last axis changes fastest. */
+/* Writes the values of point i. The replicates change fastest, then the last axis. */
 static void place_point(const hf_study *s, int i, int *value)
 {
-    int rest = i, sampled = -1;
+    int rest = s->n_replicate ? i / s->n_replicate : i, sampled = -1;
     for (int a = s->n_axis - 1; a >= 0; a--) {
         const hf_study_axis *axis = &s->axis[a];
-        if (s->is_zip) {
-            value[a] = i;
+        if (axis->is_replicate) {
+            value[a] = i % s->n_replicate;
+        } else if (s->is_zip) {
+            value[a] = rest;
         } else if (axis->is_sampled && sampled >= 0) {
             value[a] = sampled;
         } else {
@@ -185,6 +191,7 @@ static bool digest_point(const hf_study *s, const int *value, char hex[65])
     if (!text) return false;
     for (int a = 0; a < s->n_axis; a++) {
         const char *line = s->axis[a].canonical[value[a]];
+        if (s->axis[a].is_replicate && value[a] == 0) continue;
         bool is_long = strlen(line) >= HF_KEY_SIZE; /* such a value is a path, and no word with an old name */
         hf_config_old_name(is_long ? s->axis[a].key.path : line, old);
         used += (size_t)snprintf(text + used, size - used, "%s%s\n", old, is_long ? strchr(line, '=') : "");
@@ -294,6 +301,7 @@ static hf_status learn_from(hf_study *s, int i, hf_case *c, hf_messages *message
     HF_TRY(hf_config_load(s->base, o.set, o.n_set, c, messages));
     HF_TRY(take_fingerprint(s, c, messages));
     s->has_optimize = c->has_optimize;
+    s->has_search = c->has_optimize && c->optimize.method != HF_OPTIMIZE_LM;
     s->derives_seed = c->has_optimize && !has_seed_axis;
     s->seed = c->optimize.seed;
     if (!*s->title) snprintf(s->title, sizeof s->title, "%s", c->title);
@@ -326,10 +334,31 @@ static hf_status learn_from_a_point(hf_study *s, hf_messages *messages)
     return status;
 }
 
+/* Refuses replicates that would all be identical. */
+static hf_status check_replicates(const hf_study *s, hf_messages *messages)
+{
+    const hf_study_axis *replicate = NULL;
+    bool has_search = s->has_search;
+    for (int a = 0; a < s->n_axis; a++) {
+        const hf_study_axis *axis = &s->axis[a];
+        if (axis->is_replicate) replicate = axis;
+        for (int k = 0; k < axis->n_value && !strcmp(axis->key.path, "optimize.method"); k++)
+            has_search &= strcmp(hf_study_axis_value(axis, k), hf_optimize_method_word[HF_OPTIMIZE_LM]) != 0;
+    }
+    if (!replicate || has_search) return HF_OK;
+    return hf_error(messages, HF_BAD_CASE,
+                    "%s:%d:%d: sweep.replicates: all replicates would be identical, because %s. Remove the key "
+                    "replicates, or %s",
+                    s->path, replicate->line, replicate->column,
+                    s->has_optimize ? "the method lm uses no random numbers" : "the case has no section optimize",
+                    s->has_optimize ? "use the method ga or ga+lm" : "add the section optimize");
+}
+
 hf_status hf_study_make_points(hf_study *s, hf_messages *messages)
 {
     HF_TRY(name_points(s, messages));
-    return learn_from_a_point(s, messages);
+    HF_TRY(learn_from_a_point(s, messages));
+    return check_replicates(s, messages);
 }
 
 void hf_study_free(hf_study *s)
@@ -355,7 +384,7 @@ void hf_study_point_overrides(const hf_study *s, int i, hf_study_overrides *o)
     const int *value = s->value + (size_t)i * (size_t)s->n_axis;
     o->n_set = 0;
     for (int a = 0; a < s->n_axis; a++)
-        o->set[o->n_set++] = s->axis[a].set[value[a]];
+        if (!s->axis[a].is_replicate) o->set[o->n_set++] = s->axis[a].set[value[a]];
     if (!s->derives_seed) return;
     char text[64], hex[65];
     int n = snprintf(text, sizeof text, "seed %" PRIu64 " of point %s", s->seed, s->id[i]);

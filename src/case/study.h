@@ -8,12 +8,13 @@
  *       optimize.range_N: {from: 0.5, to: 2, sample: sobol}   # or latin_hypercube; all sampled axes are one axis of n
  *       n: 64               # points along every range that has no n of its own
  *       combine: product    # or zip: all axes side by side
+ *       replicates: 15      # runs of each combination, each with a seed of its own: an axis `replicate` of 1 to 15
  *       seed: 1             # of the latin hypercube
  *       files: auto         # a result file per point: auto = with an optimize section, all, none
  *
  * A point is identified by its values, not by its number. Its id is the first 12 digits of the SHA-256 of its sorted
  * lines "key=value", with the names of version 0.2. If an axis grows, or a version renames a key, the existing points
- * keep their ids, files and seeds. */
+ * keep their ids, files and seeds. Replicate 1 has no line, so that it is the point of a study without replicates. */
 #pragma once
 
 #include "case/config_key.h"
@@ -23,7 +24,9 @@
 #define HF_STUDY_AXIS_MAX 32
 #define HF_STUDY_POINT_MAX 1000000
 #define HF_STUDY_TABLE_MAX 5
-#define HF_STUDY_ID_SIZE 13 /* 12 hexadecimal digits */
+#define HF_STUDY_REPLICATES_MAX 1000
+#define HF_STUDY_REPLICATE "replicate" /* name of the axis of the replicates, which is no key of a case */
+#define HF_STUDY_ID_SIZE 13            /* 12 hexadecimal digits */
 #define HF_STUDY_FINGERPRINT_SIZE 17
 
 extern const char *const hf_study_files_word[3];
@@ -32,7 +35,7 @@ typedef enum { HF_FILES_AUTO, HF_FILES_ALL, HF_FILES_NONE } hf_study_files;
 typedef struct {
     hf_key key;
     int line, column;
-    bool is_sampled;
+    bool is_sampled, is_replicate;
     int n_value;
     char **canonical; /* [n_value], "key=value" with one spelling for each value: 10, not 1e1 */
     char **set;       /* [n_value], the same as an override of hf_config_load: paths start from the current folder */
@@ -58,11 +61,13 @@ typedef struct {
     hf_study_files files;
     int n_axis;
     hf_study_axis axis[HF_STUDY_AXIS_MAX]; /* sorted by key, as version 0.2 names it */
+    int n_replicate; /* points of each combination of the other axes, which stand side by side; 0: no such axis */
     int n_point;
     int *value;                   /* [n_point][n_axis], index of the value */
     char (*id)[HF_STUDY_ID_SIZE]; /* [n_point] */
     hf_study_name *by_id;         /* [n_point], sorted */
     bool has_optimize;            /* the points have a section optimize */
+    bool has_search;              /* they draw random numbers for it, unlike with the method lm */
     bool derives_seed;            /* true: every point has a seed of its own; optimize.seed is no axis */
     uint64_t seed;                /* optimize.seed of the base case */
     char fingerprint

@@ -199,6 +199,7 @@ static void read_list(reader *r, hf_study_axis *axis, const yaml_node_t *list, s
 {
     long n = list->data.sequence.items.top - list->data.sequence.items.start;
     to->list = list;
+    to->mark = list->start_mark;
     to->is_faulty = n < 1 || n > HF_STUDY_POINT_MAX;
     if (to->is_faulty)
         fault(r, list->start_mark, axis->key.path, "needs from 1 to %d values", HF_STUDY_POINT_MAX);
@@ -365,9 +366,38 @@ static void fault_no_axis(reader *r, const yaml_node_t *key, const char *word, c
     }
 }
 
+/* Appends an axis. Returns false after reporting a fault if there are too many. */
+static bool add_axis(reader *r, const yaml_node_t *key, const hf_key *of)
+{
+    hf_study *s = r->study;
+    if (s->n_axis == HF_STUDY_AXIS_MAX) {
+        fault(r, key->start_mark, of->path, "more than %d axes", HF_STUDY_AXIS_MAX);
+        return false;
+    }
+    s->axis[s->n_axis++] =
+        (hf_study_axis){.key = *of, .line = (int)key->start_mark.line + 1, .column = (int)key->start_mark.column + 1};
+    return true;
+}
+
+/* Reads the number of replicates as an axis of the whole numbers up to it. */
+static void read_replicates(reader *r, const yaml_node_t *key, const yaml_node_t *value)
+{
+    static const hf_field field = {HF_STUDY_REPLICATE, HF_FIELD_INT, 0, 1, HF_STUDY_REPLICATES_MAX, "", "", NULL};
+    hf_study *s = r->study;
+    uint64_t n = 0;
+    if (!hf_text_uint64(hf_config_text(value), &n) || n < 2 || n > HF_STUDY_REPLICATES_MAX) {
+        fault(r, value->start_mark, hf_config_text(key), "must be a whole number from 2 to %d, not '%s'",
+              HF_STUDY_REPLICATES_MAX, hf_config_text(value));
+    } else if (add_axis(r, key, &(hf_key){.path = HF_STUDY_REPLICATE, .field = &field})) {
+        s->n_replicate = (int)n;
+        s->axis[s->n_axis - 1].is_replicate = true;
+        r->source[s->n_axis - 1] = (source){.from = 1, .to = (double)n, .n = (int)n, .mark = value->start_mark};
+    }
+}
+
 static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *value)
 {
-    static const char *const reserved[] = {"n", "combine", "seed", "files"};
+    static const char *const reserved[] = {"n", "combine", "seed", "files", "replicates"};
     const char *names[256];
     char path[HF_KEY_SIZE];
     hf_study *s = r->study;
@@ -376,7 +406,7 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
     hf_config_rename(&r->faults, key->start_mark.line, key->start_mark.column, hf_config_text(key), path);
     for (int i = 0; i < hf_n_field && n < 250; i++)
         names[n++] = hf_field_table[i].path;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 5; i++)
         names[n++] = reserved[i];
     if (!hf_key_find(path, &found) || !found.field) {
         fault_no_axis(r, key, path, names, n);
@@ -387,14 +417,9 @@ static void read_axis(reader *r, const yaml_node_t *key, const yaml_node_t *valu
             fault(r, key->start_mark, path, "is an axis already, on line %d", s->axis[a].line);
             return;
         }
-    if (s->n_axis == HF_STUDY_AXIS_MAX) {
-        fault(r, key->start_mark, path, "more than %d axes", HF_STUDY_AXIS_MAX);
-        return;
-    }
-    hf_study_axis *axis = &s->axis[s->n_axis++];
+    if (!add_axis(r, key, &found)) return;
+    hf_study_axis *axis = &s->axis[s->n_axis - 1];
     source *to = &r->source[s->n_axis - 1];
-    *axis =
-        (hf_study_axis){.key = found, .line = (int)key->start_mark.line + 1, .column = (int)key->start_mark.column + 1};
     to->is_faulty = value->type == YAML_SCALAR_NODE;
     if (value->type == YAML_SEQUENCE_NODE)
         read_list(r, axis, value, to);
@@ -426,9 +451,15 @@ static void read_sweep(reader *r, const yaml_node_t *mapping)
             if (!hf_text_uint64(hf_config_text(value), &r->seed))
                 fault(r, value->start_mark, "", "seed must be a whole number from 0 to 2^64-1, not '%s'",
                       hf_config_text(value));
-        } else
+        } else if (!strcmp(word, "replicates"))
+            read_replicates(r, key, value);
+        else
             read_axis(r, key, value);
     }
+    for (int a = 0; a < s->n_axis && s->n_replicate; a++)
+        if (!strcmp(s->axis[a].key.path, "optimize.seed"))
+            fault(r, r->source[a].mark, "optimize.seed",
+                  "each replicate has a seed of its own. Remove this axis, or the key replicates");
     if (!s->n_axis && !r->failed) fault(r, mapping->start_mark, "", "has no axis");
     count_values(r);
     if (!r->failed && hf_study_count_points(s, r->messages) != HF_OK)

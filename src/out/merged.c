@@ -1,10 +1,10 @@
 /* Reads a merged study and ranks its points:
  *
  *     tables of points ---> axes, figures of each stage ---> which figures vary ---> verdicts ---> ranking figure
- *       ---> best point ---> whether the figure still improves at the end of an axis, intervals that pass
+ *       ---> best point ---> intervals that pass
  *
- * Contents: reading, what varies, verdicts, the best point, columns of the requirements, the end of an axis,
- * intervals that pass. */
+ * merged_groups.c continues with the groups of replicates. Contents: reading, what varies, verdicts, the best point,
+ * columns of the requirements, rounding, intervals that pass. */
 #include "out/merged.h"
 
 #include "base/elementary.h"
@@ -21,9 +21,10 @@
 #define RESOLVED_M 1e-9    /* differences of lengths below this are rounding */
 #define REACHED_RATIO 1e-9 /* rounding of an objective, relative to its value after form-finding */
 
-const char *hf_merged_stage_word(hf_merged_stage stage)
+const char *hf_merged_stage_word(const hf_merged *m, hf_merged_stage stage)
 {
     static const char *const other[] = {"tolerance", "load_cases", "requirements"};
+    if (m && m->is_mixed && stage == HF_MERGED_REFINE) return "result";
     return stage < HF_MERGED_BUILT ? hf_stage_word[stage] : other[stage - HF_MERGED_BUILT];
 }
 
@@ -103,8 +104,8 @@ static hf_status read_load_cases(hf_merged *m, hf_messages *messages)
 static hf_status read_stage(hf_merged *m, hf_merged_stage stage, hf_messages *messages)
 {
     char group[GROUP_SIZE], surface[GROUP_SIZE];
-    snprintf(group, sizeof group, "/points/%s", hf_merged_stage_word(stage));
-    snprintf(surface, sizeof surface, "/points/surface/%s", hf_merged_stage_word(stage));
+    snprintf(group, sizeof group, "/points/%s", hf_merged_stage_word(NULL, stage));
+    snprintf(surface, sizeof surface, "/points/surface/%s", hf_merged_stage_word(NULL, stage));
     for (int k = 0; k < N_KEY; k++)
         HF_TRY(read_figure(m, stage, group, key_of_stage[k], messages));
     int n_before = m->n_figure;
@@ -144,6 +145,7 @@ static hf_status read_axes(hf_merged *m, hf_messages *messages)
         if (!m->input_text[a].n) HF_TRY(hf_store_read_series(m->path, name, 0, &m->input[a], messages));
         if (m->input[a].n != m->n) hf_series_free(&m->input[a]);
         if (m->input_text[a].n != m->n) hf_texts_free(&m->input_text[a]);
+        if (!strcmp(hf_texts_at(&m->input_name, a), HF_STUDY_REPLICATE)) m->replicate = a;
     }
     return HF_OK;
 }
@@ -195,8 +197,7 @@ bool hf_merged_is_done(const hf_merged *m, int i)
     return m->status.value[i] == HF_OK;
 }
 
-/* Returns whether points i and j have the same value of axis a. */
-static bool agree(const hf_merged *m, int a, int i, int j)
+bool hf_merged_agree(const hf_merged *m, int a, int i, int j)
 {
     const hf_series *s = &m->input[a];
     const hf_texts *t = &m->input_text[a];
@@ -208,7 +209,7 @@ static bool agree(const hf_merged *m, int a, int i, int j)
 bool hf_merged_axis_varies(const hf_merged *m, int a)
 {
     for (int i = 1; i < m->n; i++)
-        if (!agree(m, a, 0, i)) return true;
+        if (!hf_merged_agree(m, a, 0, i)) return true;
     return false;
 }
 
@@ -261,8 +262,21 @@ static bool is_psi(const hf_merged *m, const hf_merged_figure *f)
     return true;
 }
 
-/* Chooses the stage that is the result. It is the search where that ran, unless a refinement continued it to the
- * result. */
+/* Where the refined design of a point is not the result, the figures of its search take their place. The stage is then
+ * called the result. */
+static void take_results(hf_merged *m, const hf_series *is_refined)
+{
+    for (int i = 0; i < m->n; i++)
+        m->is_mixed |= hf_merged_is_done(m, i) && is_refined->value[i] != 1;
+    for (int k = 0; k < m->n_figure; k++) {
+        hf_merged_figure *f = &m->figure[k];
+        const hf_merged_figure *searched = hf_merged_find(m, HF_MERGED_SEARCH, f->key);
+        for (int i = 0; i < m->n && f->stage == HF_MERGED_REFINE && searched; i++)
+            if (is_refined->value[i] != 1) f->value.value[i] = searched->value.value[i];
+    }
+}
+
+/* Chooses the stage that is the result. It is the last one that any point has. */
 static hf_status choose_main(hf_merged *m, hf_messages *messages)
 {
     hf_series is_result = {0};
@@ -270,9 +284,10 @@ static hf_status choose_main(hf_merged *m, hf_messages *messages)
     bool is_refine = false, has_search = hf_merged_find(m, HF_MERGED_SEARCH, "psi_m") != NULL;
     for (int i = 0; i < is_result.n; i++)
         is_refine |= is_result.value[i] == 1;
-    hf_series_free(&is_result);
     if (!has_search) is_refine = hf_merged_find(m, HF_MERGED_REFINE, "psi_m") != NULL;
     m->main = is_refine ? HF_MERGED_REFINE : has_search ? HF_MERGED_SEARCH : HF_MERGED_FORM;
+    if (is_refine && has_search && is_result.n == m->n) take_results(m, &is_result);
+    hf_series_free(&is_result);
     return HF_OK;
 }
 
@@ -342,6 +357,11 @@ static double rank_value(const hf_merged *m, int figure, int i)
     double value = m->figure[figure].value.value[i];
     if (hf_merged_is_margin(m, figure)) value = -value;
     return isnan(value) ? (double)INFINITY : value;
+}
+
+double hf_merged_rank_value(const hf_merged *m, int i)
+{
+    return hf_merged_is_done(m, i) ? rank_value(m, m->lead, i) : (double)INFINITY;
 }
 
 bool hf_merged_ranks_before(const hf_merged *m, int i, int j)
@@ -508,46 +528,18 @@ double hf_merged_bound(const hf_merged *m, const hf_series *bound, int row)
     return first;
 }
 
-/* ---- the end of an axis ---- */
+/* ---- rounding ---- */
 
-/* Returns whether point i agrees with the best point in all axes but this one. */
-static bool is_on_curve(const hf_merged *m, int axis, int i)
+double hf_merged_rounding(const hf_merged *m)
 {
-    for (int a = 0; a < m->n_axis; a++)
-        if (a != axis && !agree(m, a, i, m->best)) return false;
-    return i != m->best;
+    const char *key = m->figure[m->lead].key;
+    return fmax(rounding_of(m, key), strcmp(hf_ledger_unit(key), "m") ? 0 : RESOLVED_M);
 }
 
-/* Returns whether the ranking figure improves from point i to point j by more than rounding. */
-static bool improves(const hf_merged *m, int i, int j)
+bool hf_merged_is_resolved(double a, double b, double rounding)
 {
-    const hf_merged_figure *f = &m->figure[m->lead];
-    double from = rank_value(m, m->lead, i), to = rank_value(m, m->lead, j), rounding = rounding_of(m, f->key);
-    if (!strcmp(hf_ledger_unit(f->key), "m")) rounding = fmax(rounding, RESOLVED_M);
-    return hf_merged_is_done(m, i) && from - to > fmax(rounding, SAME_RATIO * fmax(fabs(from), fabs(to)));
-}
-
-int hf_merged_improves_on(const hf_merged *m, int axis)
-{
-    const hf_series *s = &m->input[axis];
-    int near = -1, next = -1, side = 0; /* the two points nearest to the best one, both on the same side of it */
-    bool is_error = !strncmp(hf_texts_at(&m->input_name, axis), "tolerance.sigma_", 16);
-    if (m->best < 0 || m->lead < 0 || !s->n || s->columns != 1 || is_error) return 0;
-    double at = s->value[m->best];
-    for (int i = 0; i < m->n; i++) {
-        double away = s->value[i] - at;
-        if (away == 0 || !is_on_curve(m, axis, i)) continue;
-        if (side && (away > 0) != (side > 0)) return 0;
-        side = away > 0 ? 1 : -1;
-        if (near < 0 || fabs(away) < fabs(s->value[near] - at)) {
-            next = near;
-            near = i;
-        } else if (next < 0 || fabs(away) < fabs(s->value[next] - at)) {
-            next = i;
-        }
-    }
-    if (next < 0 || !improves(m, next, near) || !improves(m, near, m->best)) return 0;
-    return -side;
+    if (isinf(a) || isinf(b)) return a != b;
+    return fabs(a - b) > fmax(rounding, SAME_RATIO * fmax(fabs(a), fabs(b)));
 }
 
 /* ---- intervals that pass ---- */
@@ -566,9 +558,9 @@ int hf_merged_passing(const hf_merged *m, int axis, hf_merged_interval *interval
 {
     const hf_series *s = &m->input[axis];
     int n = 0;
-    if (!s->n || s->columns != 1 || !hf_merged_is_judged(m)) return 0;
+    if (!s->n || s->columns != 1 || !hf_merged_is_judged(m) || axis == m->replicate) return 0;
     for (int a = 0; a < m->n_axis; a++)
-        if (a != axis && hf_merged_axis_varies(m, a)) return 0;
+        if (a != axis && a != m->replicate && hf_merged_axis_varies(m, a)) return 0;
     tried *point = malloc((size_t)m->n * sizeof *point);
     for (int i = 0; i < m->n && point; i++)
         point[i] = (tried){s->value[i], m->judgement[i].verdict == HF_VERDICT_PASS};
@@ -592,9 +584,9 @@ const char *hf_merged_heading(const hf_merged *m)
     return m->title.n ? hf_texts_at(&m->title, 0) : hf_path_name(m->path);
 }
 
-hf_status hf_merged_read(const char *path, hf_merged *m, hf_messages *messages)
+hf_status hf_merged_read_points(const char *path, hf_merged *m, hf_messages *messages)
 {
-    *m = (hf_merged){.path = path, .lead = -1, .best = -1};
+    *m = (hf_merged){.path = path, .lead = -1, .best = -1, .replicate = -1};
     HF_TRY(read_points(m, messages));
     HF_TRY(read_axes(m, messages));
     HF_TRY(read_count(m, "/points/form/n_inner_node", &m->n_inner_node, messages));
@@ -605,11 +597,11 @@ hf_status hf_merged_read(const char *path, hf_merged *m, hf_messages *messages)
         HF_TRY(read_figure(m, HF_MERGED_BUILT, "/points/tolerance", key_as_built[k], messages));
     HF_TRY(read_load_cases(m, messages));
     HF_TRY(read_requirements(m, messages));
+    HF_TRY(choose_main(m, messages));
     for (int k = 0; k < m->n_figure; k++) {
         m->figure[k].is_same = is_same(m, &m->figure[k]);
         m->figure[k].is_psi = is_psi(m, &m->figure[k]);
     }
-    HF_TRY(choose_main(m, messages));
     m->judgement = calloc((size_t)m->n + 1, sizeof *m->judgement);
     if (!m->judgement) return hf_error(messages, HF_NO_MEMORY, "%s: out of memory", path);
     for (int i = 0; i < m->n; i++)
@@ -632,6 +624,7 @@ void hf_merged_free(hf_merged *m)
     hf_series_free(&m->row_at_least);
     hf_series_free(&m->row_at_most);
     free(m->judgement);
+    free(m->group);
     hf_series_free(&m->status);
     for (int a = 0; a < HF_STUDY_AXIS_MAX; a++) {
         hf_series_free(&m->input[a]);

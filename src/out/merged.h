@@ -16,10 +16,6 @@ typedef enum {
     HF_MERGED_REQUIREMENTS
 } hf_merged_stage;
 
-/* Returns the word of a stage in JSON: that of hf_stage_word, "tolerance", "load_cases" or
- * "requirements". */
-const char *hf_merged_stage_word(hf_merged_stage stage);
-
 typedef struct {
     hf_merged_stage stage;
     char load_case[HF_SET_NAME_SIZE]; /* load case of HF_MERGED_LOAD_CASES; "" for other stages */
@@ -38,6 +34,30 @@ typedef struct {
                                             else of all, by relative margin; -1: none */
 } hf_merged_judgement;
 
+/* The replicates of one combination of the other axes: consecutive points. The ranking figure has these statistics over
+ * the replicates that are done; a failed replicate and one without a value rank last, as infinite. Quartiles are
+ * interpolated between the sorted values, of which the first has position 0 and the last 1. */
+typedef enum {
+    HF_MERGED_MINIMUM,
+    HF_MERGED_LOWER_QUARTILE,
+    HF_MERGED_MEDIAN,
+    HF_MERGED_UPPER_QUARTILE,
+    HF_MERGED_MAXIMUM,
+    HF_MERGED_N_STATISTIC
+} hf_merged_statistic;
+extern const char *const hf_merged_statistic_word[HF_MERGED_N_STATISTIC]; /* "minimum", "lower_quartile", ... */
+
+typedef struct {
+    int first, n;                            /* its points */
+    int n_run;                               /* replicates that are done or have failed */
+    int best;                                /* best point of the group; -1: none is done */
+    int rank;                                /* from 0, by the verdict and the value of the median */
+    double statistic[HF_MERGED_N_STATISTIC]; /* SI units; NaN: it has no value */
+} hf_merged_group;
+
+#define HF_MERGED_DIFFER_P 0.01 /* groups differ if the p-value of the rank test is below */
+#define HF_MERGED_DIFFER_N 5    /* fewer replicates cannot give such a p-value */
+
 #define HF_MERGED_FIGURE_MAX 1536
 
 typedef struct {
@@ -51,9 +71,10 @@ typedef struct {
     int n_inner_node, n_free; /* the nodes that psi counts, and all free nodes; 0: points differ, or do not say it */
     int n_figure;
     hf_merged_figure figure[HF_MERGED_FIGURE_MAX]; /* in the order of the stages */
-    hf_merged_stage main;                          /* the stage that is the result */
-    int n_row;                                     /* number of rows of `requirements`; 0: the study has none */
-    hf_texts row_name;                             /* [n_row] names of the rows */
+    hf_merged_stage main; /* the stage that is the result; where that is the search, REFINE has its figures */
+    bool is_mixed;        /* REFINE has figures of the search at a point, so it is called "result" */
+    int n_row;            /* number of rows of `requirements`; 0: the study has none */
+    hf_texts row_name;    /* [n_row] names of the rows */
     hf_series row_verdict, row_margin, row_relative_margin; /* [n][n_row] hf_verdict, margin, relative margin */
     /* [n][n_row] value and bounds of each row; NaN: none. The series are empty in files of earlier versions. */
     hf_series row_value, row_at_least, row_at_most;
@@ -61,7 +82,19 @@ typedef struct {
     /* The figure that ranks the points, after what they fail (hf_merged_is_judged), and the best point; -1 when nothing
      * varies. The best point has the minimum of this figure or, of HF_MERGED_MARGIN, its maximum. */
     int lead, best;
+    int replicate;          /* the axis of the replicates; -1: none */
+    int n_group;            /* 0: the study has no replicates, or nothing varies */
+    hf_merged_group *group; /* [n_group] owned, in the order of the points */
+    /* The two best groups, and the p-value of the Mann-Whitney U test whether they differ (out/rank_test.h). Values
+     * that differ by rounding count as equal. best_group -1: no point is done. second_group -1: there is no second one,
+     * and differ_p is NaN. */
+    int best_group, second_group;
+    double differ_p;
 } hf_merged;
+
+/* Returns the word of a stage in JSON: that of hf_stage_word, "result", "tolerance", "load_cases" or "requirements".
+ * m: NULL for the word of the group in a file. */
+const char *hf_merged_stage_word(const hf_merged *m, hf_merged_stage stage);
 
 /* Key of the smallest relative margin, a figure of HF_MERGED_REQUIREMENTS. */
 #define HF_MERGED_MARGIN "relative_margin_min"
@@ -88,7 +121,8 @@ bool hf_merged_is_beyond(const hf_merged *merged, const hf_merged_figure *loss, 
 
 /* Returns 1 or -1 when an axis should be extended above or below its range, otherwise 0. This is so when the best point
  * is at an end of the axis and the ranking figure still improves towards it. It must improve over the last two steps by
- * more than rounding, between points that agree in all other axes. Returns 0 for an axis of errors, too, because
+ * more than rounding, between points that agree in all other axes. With replicates this holds for the medians of
+ * groups. Returns 0 for an axis of errors, too, because
  * smaller errors are always better. */
 int hf_merged_improves_on(const hf_merged *merged, int axis);
 
@@ -111,6 +145,22 @@ double hf_merged_bound(const hf_merged *merged, const hf_series *bound, int row)
 
 /* Returns whether a figure is the smallest relative margin, of which more is better. -1: no figure. */
 bool hf_merged_is_margin(const hf_merged *merged, int figure);
+
+/* The part of hf_merged_read before the groups of replicates. */
+hf_status hf_merged_read_points(const char *path, hf_merged *merged, hf_messages *messages);
+
+/* Returns the absolute difference up to which values of the ranking figure count as equal. They also do up to a
+ * relative difference of 1e-6 (hf_merged_is_resolved). */
+double hf_merged_rounding(const hf_merged *merged);
+bool hf_merged_is_resolved(double a, double b, double rounding);
+
+/* Returns whether two points have the same value of an axis. */
+bool hf_merged_agree(const hf_merged *merged, int axis, int i, int j);
+
+/* Return the value of the ranking figure of a point or the median of a group, of which less is better: its negative for
+ * a margin. Infinite: the point is not done, or there is no value. */
+double hf_merged_rank_value(const hf_merged *merged, int point);
+double hf_merged_median(const hf_merged *merged, const hf_merged_group *group);
 
 /* Returns whether point i ranks before point j, without regard to rounding. */
 bool hf_merged_ranks_before(const hf_merged *merged, int i, int j);

@@ -83,6 +83,22 @@ void hf_print_held(const hf_held_limits *h, FILE *f)
     }
 }
 
+void hf_print_optima(const hf_summary *s, FILE *f)
+{
+    const hf_optima *o = s->stage[HF_STAGE_REFINE].optima;
+    bool is_psi = s->objectives.n == 0;
+    int n_refinement = 0;
+    if (!o) return;
+    for (int i = 0; i < o->n; i++)
+        n_refinement += o->count[i];
+    fprintf(f, "                distinct optima:");
+    for (int i = 0; i < o->n; i++) {
+        fprintf(f, is_psi ? "%s psi %.4f mm" : "%s merit %.6g", i ? "," : "", o->merit[i] * (is_psi ? 1e3 : 1));
+        fprintf(f, " (%d of %d refinements)", o->count[i], n_refinement);
+    }
+    fputc('\n', f);
+}
+
 void hf_print_objective(const char *before, const char *name, double value, bool in_SI, FILE *f)
 {
     const char *unit = hf_ledger_objective_unit(name);
@@ -261,6 +277,13 @@ static void print_search(const hf_summary *s, FILE *f)
 
 /* ---- refinement ---- */
 
+static const char *start_of(const hf_summary *s)
+{
+    if (!s->stage[HF_STAGE_SEARCH].exists) return "initial design";
+    return s->stage[HF_STAGE_SEARCH].result.status == HF_OK ? "best design of the search"
+                                                            : "design of the search nearest to the constraints";
+}
+
 static void print_refine(const hf_summary *s, FILE *f)
 {
     const hf_stage_summary *stage = &s->stage[HF_STAGE_REFINE];
@@ -271,14 +294,15 @@ static void print_refine(const hf_summary *s, FILE *f)
                       stage->result.psi_m * 1e3, boundary.text, s->taken.point, s->taken.path);
     } else {
         fprintf(f, "  refine        psi %.4f mm, %s; started from the %s; boundary ratio %s; ",
-                stage->result.psi_m * 1e3, s->refine.is_result ? "the result" : "for comparison",
-                s->stage[HF_STAGE_SEARCH].exists ? "best design of the search" : "initial design", boundary.text);
+                stage->result.psi_m * 1e3, s->refine.is_result ? "the result" : "no better than the search",
+                start_of(s), boundary.text);
         hf_print_steps(&s->refine, f);
         fprintf(f, ", %s\n", hf_print_duration(stage->wall_s).text);
     }
     if (s->refine.n_at_limit) snprintf(limits, sizeof limits, " and %d limits", s->refine.n_at_limit);
     fprintf(f, "                at %d lower bounds and %d upper bounds%s%s\n", s->refine.n_at_lower,
             s->refine.n_at_upper, limits, s->refine.is_at_cap ? " and at boundary_ratio_cap" : "");
+    hf_print_optima(s, f);
     print_design(s, HF_STAGE_REFINE, f);
 }
 

@@ -1,5 +1,4 @@
-/* Prints a merged study as text or as JSON. Contents: columns, cells, the table, verdicts, lines, the whole text,
- * JSON. */
+/* Prints a merged study as text. Contents: columns, cells, the table, verdicts, lines, the whole text. */
 #include "out/print_study.h"
 
 #include "base/json.h"
@@ -25,12 +24,12 @@
 
 /* ---- columns ---- */
 
-typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_VERDICT, OF_TIGHTEST, OF_REQUIRED } column_kind;
+typedef enum { OF_AXIS, OF_STATUS, OF_FIGURE, OF_VERDICT, OF_TIGHTEST, OF_REQUIRED, OF_GROUP } column_kind;
 
 /* Describes a column of the table. Its head has lines of the name, which '\n' separates, and below them the unit. */
 typedef struct {
     column_kind kind;
-    int index; /* of the axis, the figure or the requirement */
+    int index; /* of the axis, the figure, the requirement or the statistic of a group */
     char head[2 * HF_AXIS_NAME_SIZE];
     char unit[HF_PRINT_BOUND_SIZE]; /* of a requirement its bounds */
     double scale;                   /* factor of the values for this unit */
@@ -41,7 +40,8 @@ typedef struct {
     const hf_merged *m;
     column column[HF_STUDY_AXIS_MAX + HF_MERGED_FIGURE_MAX + HF_REQUIREMENT_ROWS_MAX + 4];
     int n_column, n_axis; /* n_axis: the first columns are axes */
-    bool is_all;          /* true: all points are rows; false: those of `best` */
+    bool of_groups;       /* true: a row is a group of replicates, given by its first point; false: a point */
+    bool is_all;          /* true: all points or groups are rows; false: those of `best` */
     int n_row, best[POINTS_BEST];
     int n_required, required[HF_REQUIREMENT_ROWS_MAX]; /* requirements in the order of their columns */
     bool is_short; /* only the first requirements have a column, and other figures have none */
@@ -130,7 +130,7 @@ static void name_figure(const hf_merged *m, const hf_merged_figure *f, char name
     snprintf(name, HF_AXIS_NAME_SIZE, "%.*s", HF_AXIS_NAME_SIZE - 1, f->key);
     if (!strcmp(f->key, "psi_m")) {
         snprintf(name, HF_AXIS_NAME_SIZE, m->main == HF_MERGED_FORM || *f->load_case ? "psi" : "psi %s",
-                 hf_merged_stage_word(f->stage));
+                 hf_merged_stage_word(m, f->stage));
     } else if (!strncmp(f->key, "objective_", 10)) {
         char words[HF_AXIS_NAME_SIZE];
         snprintf(name, HF_AXIS_NAME_SIZE, "objective %.*s", HF_AXIS_NAME_SIZE - 11,
@@ -245,17 +245,11 @@ static void print_axis_value(const hf_merged *m, const column *c, int i, char te
     if (is_long) strcat(text, "...");
 }
 
-/* Formats a figure at point i. A gain loss without a value is above the range of Ruze's formula, if the surface error
- * has a value. */
-static void print_figure(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
+/* Formats a value of a figure in the unit of its column. */
+static void print_value(const hf_merged_figure *f, const column *c, double value, char text[CELL_SIZE])
 {
-    const hf_merged_figure *f = &m->figure[c->index];
-    double value = c->scale * f->value.value[i];
-    bool is_loss = strstr(f->key, "gain_loss_at_") != NULL; /* by physical optics, one without a value is unknown */
-    if (!hf_merged_is_done(m, i))
+    if (isnan(value))
         strcpy(text, "-");
-    else if (isnan(value))
-        snprintf(text, CELL_SIZE, is_loss && hf_merged_is_beyond(m, f, i) ? "above %g" : "-", HF_RUZE_MOST_DB);
     else if (isinf(value))
         strcpy(text, value > 0 ? "inf" : "-inf");
     else if (!strcmp(c->unit, "mm") || strstr(f->key, "tension_ratio"))
@@ -264,6 +258,51 @@ static void print_figure(const hf_merged *m, const column *c, int i, char text[C
         snprintf(text, CELL_SIZE, f->stage == HF_MERGED_REQUIREMENTS ? "%+.1f" : "%.1f", value);
     else
         snprintf(text, CELL_SIZE, !strncmp(f->key, "n_", 2) ? "%g" : "%#.4g", value);
+}
+
+/* Formats a figure at point i. A gain loss without a value is above the range of Ruze's formula, if the surface error
+ * has a value. */
+static void print_figure(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
+{
+    const hf_merged_figure *f = &m->figure[c->index];
+    double value = hf_merged_is_done(m, i) ? c->scale * f->value.value[i] : (double)NAN;
+    bool is_loss = strstr(f->key, "gain_loss_at_") != NULL; /* by physical optics, one without a value is unknown */
+    print_value(f, c, value, text);
+    if (hf_merged_is_done(m, i) && isnan(value) && is_loss && hf_merged_is_beyond(m, f, i))
+        snprintf(text, CELL_SIZE, "above %g", HF_RUZE_MOST_DB);
+}
+
+/* Returns the group that begins with point i. */
+static const hf_merged_group *group_at(const hf_merged *m, int i)
+{
+    int low = 0, high = m->n_group - 1;
+    while (low < high) {
+        int k = (low + high + 1) / 2;
+        if (m->group[k].first > i)
+            high = k - 1;
+        else
+            low = k;
+    }
+    return &m->group[low];
+}
+
+static column statistic_column(const hf_merged *m, int k)
+{
+    column c = figure_column(m, m->lead);
+    c.kind = OF_GROUP;
+    c.index = k;
+    snprintf(c.head, sizeof c.head, "%s", hf_merged_statistic_word[k]);
+    c.head[strcspn(c.head, "_")] = c.head[strcspn(c.head, "_")] ? '\n' : '\0';
+    return c;
+}
+
+static void print_statistic(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
+{
+    const hf_merged_group *g = group_at(m, i);
+    if (c->index < HF_MERGED_N_STATISTIC)
+        print_value(&m->figure[m->lead], c, c->scale * g->statistic[c->index], text);
+    else
+        snprintf(text, CELL_SIZE, "%d", g->n_run);
 }
 
 const char *hf_print_study_verdict(const hf_merged *m, int i, char text[HF_AXIS_NAME_SIZE])
@@ -350,6 +389,10 @@ static void print_required(const hf_merged *m, const column *c, int i, char text
 
 static void print_cell(const hf_merged *m, const column *c, int i, char text[CELL_SIZE])
 {
+    if (c->kind == OF_GROUP) {
+        print_statistic(m, c, i, text);
+        return;
+    }
     if (c->kind == OF_REQUIRED) {
         print_required(m, c, i, text);
         return;
@@ -371,7 +414,8 @@ static void print_cell(const hf_merged *m, const column *c, int i, char text[CEL
 
 static int point_of(const table *t, int row)
 {
-    return t->is_all ? row : t->best[row];
+    int k = t->is_all ? row : t->best[row];
+    return t->of_groups ? t->m->group[k].first : k;
 }
 
 /* Returns line k of a head, counted from the last one, and its length in *n; "" above the first one. */
@@ -428,6 +472,18 @@ static void add_columns(table *t)
                 add_column(t, figure_column(m, k));
 }
 
+/* Adds the axes of the groups, the number of replicates and the statistics of the ranking figure. */
+static void add_group_columns(table *t)
+{
+    const hf_merged *m = t->m;
+    for (int a = 0; a < m->n_axis; a++)
+        if (a != m->replicate && hf_merged_axis_varies(m, a)) add_column(t, axis_column(m, a));
+    t->n_axis = t->n_column;
+    add_column(t, (column){.kind = OF_GROUP, .index = HF_MERGED_N_STATISTIC, .head = "replicates"});
+    for (int k = 0; k < HF_MERGED_N_STATISTIC; k++)
+        add_column(t, statistic_column(m, k));
+}
+
 /* Returns whether a block that begins with column `from` contains column k. */
 static bool is_in_block(const table *t, int from, int to, int k)
 {
@@ -437,13 +493,14 @@ static bool is_in_block(const table *t, int from, int to, int k)
 /* Prints the axes and the columns from `from` to to - 1. */
 static void print_block(const table *t, int from, int to, hf_print_style style, FILE *f)
 {
+    const hf_merged *m = t->m;
     char text[CELL_SIZE];
-    int n_line = 1;
+    int n_line = 1, best = !t->of_groups ? m->best : m->best_group >= 0 ? m->group[m->best_group].first : -1;
     for (int k = 0; k < t->n_column; k++)
         if (is_in_block(t, from, to, k) && t->column[k].n_line > n_line) n_line = t->column[k].n_line;
     for (int line = -1 - n_line; line < t->n_row; line++) {
         int i = line < 0 ? -1 : point_of(t, line), n = 0;
-        bool is_best = i >= 0 && i == t->m->best;
+        bool is_best = i >= 0 && i == best;
         fputs(is_best && style.has_colour ? HF_PRINT_BOLD : "", f);
         fputs(is_best ? "*" : " ", f);
         for (int k = 0; k < t->n_column; k++) {
@@ -640,12 +697,67 @@ static void print_best(const table *t, FILE *f)
         const column *c = &t->column[k];
         int side = hf_merged_improves_on(m, c->index);
         if (side == 0) continue;
-        print_cell(m, c, m->best, cell);
-        hf_print_line(f, "  %-13s %s still %s at %s %s%s%s, the end of its axis: add points %s it", "", lead.head,
-                      hf_merged_is_margin(m, m->lead) ? "rises" : "falls", c->head, cell, *c->unit ? " " : "", c->unit,
-                      side > 0 ? "above" : "below");
+        print_cell(m, c, m->n_group ? m->group[m->best_group].first : m->best, cell);
+        hf_print_line(f, "  %-13s %s still %s at %s %s%s%s, the end of its axis: add points %s it", "",
+                      m->n_group ? "the median" : lead.head, hf_merged_is_margin(m, m->lead) ? "rises" : "falls",
+                      c->head, cell, *c->unit ? " " : "", c->unit, side > 0 ? "above" : "below");
     }
     hf_print_line(f, "  %-13s %s", "ranked by", hf_print_study_ranking(m, words));
+}
+
+/* Appends the values of the axes of a group: "pretension 10 N, range 2 N". */
+static void add_group_name(const hf_merged *m, int k, char *text, size_t size)
+{
+    bool is_first = true;
+    for (int a = 0; a < m->n_axis; a++) {
+        char cell[CELL_SIZE], item[5 * HF_AXIS_NAME_SIZE];
+        column c = axis_column(m, a);
+        if (a == m->replicate || !hf_merged_axis_varies(m, a)) continue;
+        print_cell(m, &c, m->group[k].first, cell);
+        snprintf(item, sizeof item, "%s %s%s%s", c.head, cell, *c.unit ? " " : "", c.unit);
+        hf_text_append(text, size, is_first ? "" : ", ", item, "");
+        is_first = false;
+    }
+}
+
+const char *hf_print_study_scatter(const hf_merged *m, char text[HF_PRINT_ADVICE_SIZE])
+{
+    *text = '\0';
+    if (m->second_group < 0) return text;
+    const hf_merged_group *a = &m->group[m->best_group], *b = &m->group[m->second_group];
+    bool differ = m->differ_p < HF_MERGED_DIFFER_P,
+         is_few = !differ && (a->n_run < HF_MERGED_DIFFER_N || b->n_run < HF_MERGED_DIFFER_N);
+    char tail[256];
+    add_group_name(m, m->best_group, text, HF_PRINT_ADVICE_SIZE / 2 - 128);
+    hf_text_append(text, HF_PRINT_ADVICE_SIZE, " and ", "", "");
+    add_group_name(m, m->second_group, text, HF_PRINT_ADVICE_SIZE - sizeof tail);
+    snprintf(tail, sizeof tail, "%s by more than the scatter of the search (Mann-Whitney U test, p = %.2g%s)%s",
+             differ ? " differ" : " are not shown to differ", m->differ_p, differ ? "" : ", not below 0.01",
+             is_few ? "; use at least 5 replicates, because fewer cannot show a difference" : "");
+    hf_text_append(text, HF_PRINT_ADVICE_SIZE, tail, "", "");
+    return text;
+}
+
+/* Prints the group with the best median, and whether it differs from the second. */
+static void print_scatter(const hf_merged *m, FILE *f)
+{
+    char text[HF_PRINT_ADVICE_SIZE], cell[3][CELL_SIZE], name[HF_PRINT_ADVICE_SIZE] = "";
+    if (m->best_group < 0) return;
+    const hf_merged_group *g = &m->group[m->best_group];
+    column c = figure_column(m, m->lead);
+    for (int k = 0; k < 3; k++)
+        print_value(&m->figure[m->lead], &c, c.scale * g->statistic[k + 1], cell[k]);
+    add_group_name(m, m->best_group, name, sizeof name);
+    hf_print_line(f, "  %-13s %s: %s%s%s, quartiles %s and %s%s%s", "best median", c.head, cell[1], *c.unit ? " " : "",
+                  c.unit, cell[0], cell[2], *name ? ", " : "", name);
+    const char *line = hf_print_study_scatter(m, text), *title = "scatter";
+    for (int n; *line; line += n + (line[n] == ' ')) {
+        n = (int)strlen(line) <= WIDTH - 16 ? (int)strlen(line) : WIDTH - 16;
+        while (n > 1 && line[n] && line[n] != ' ')
+            n--;
+        hf_print_line(f, "  %-13s %.*s", title, n, line);
+        title = "";
+    }
 }
 
 static void print_advice(const hf_merged *m, FILE *f)
@@ -695,6 +807,32 @@ static void print_head(const hf_merged *m, FILE *f)
 
 /* ---- the whole text ---- */
 
+/* Selects the groups that are rows: all or, of many, those that rank first. */
+static void choose_groups(table *t, bool all)
+{
+    const hf_merged *m = t->m;
+    t->of_groups = true;
+    t->is_all = all || m->n_group <= POINTS_MOST;
+    t->n_row = t->is_all ? m->n_group : POINTS_BEST;
+    for (int k = 0; k < m->n_group && !t->is_all; k++)
+        if (m->group[k].rank < POINTS_BEST) t->best[m->group[k].rank] = k;
+}
+
+/* Prints the statistics of the groups. */
+static void print_groups(table *t, hf_print_style style, FILE *f)
+{
+    const hf_merged *m = t->m;
+    *t = (table){.m = m};
+    choose_groups(t, style.verbose);
+    add_group_columns(t);
+    column c = figure_column(m, m->lead);
+    fputc('\n', f);
+    hf_print_line(f, "  %s of the replicates:", c.head);
+    print_blocks(t, style, f);
+    if (!t->is_all) hf_print_line(f, "  the %d best of %d medians; --verbose: all", t->n_row, m->n_group);
+    if (!style.verbose) hf_print_line(f, "  %-13s --verbose", "all points");
+}
+
 /* Selects the rows: all points or, in a large study, those that rank first. */
 static void choose_rows(table *t, bool all)
 {
@@ -727,114 +865,20 @@ void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
     print_head(m, f);
     print_advice(m, f);
     print_best(&t, f);
+    print_scatter(m, f);
     print_same(&t, f);
     print_failures(m, f);
-    if (t.n_column > t.n_axis) {
+    bool has_points = !m->n_group || style.verbose;
+    if (t.n_column > t.n_axis && has_points) {
         fputc('\n', f);
         print_blocks(&t, style, f);
     }
-    if (t.is_short && t.n_required <= REQUIRED_MOST)
+    if (t.is_short && t.n_required <= REQUIRED_MOST && has_points)
         hf_print_line(f, "  %-13s all requirements; --verbose: other figures, such as psi", "columns");
-    else if (t.is_short)
+    else if (t.is_short && has_points)
         hf_print_line(f, "  %-13s the %d tightest of %d requirements; --verbose: all, and other figures, such as psi",
                       "columns", REQUIRED_MOST, t.n_required);
-    if (!t.is_all) hf_print_line(f, "  the %d best of %d points; --verbose: all", t.n_row, m->n);
+    if (!t.is_all && has_points) hf_print_line(f, "  the %d best of %d points; --verbose: all", t.n_row, m->n);
+    if (m->n_group) print_groups(&t, style, f);
     hf_print_line(f, "  %-13s a page to look at: hifdm report %s", "more", m->path);
-}
-
-/* ---- JSON ---- */
-
-static void write_input(const hf_merged *m, int i, hf_json *j)
-{
-    hf_json_open(j, "input", '{');
-    for (int a = 0; a < m->n_axis; a++) {
-        const hf_series *s = &m->input[a];
-        const char *key = hf_texts_at(&m->input_name, a);
-        if (s->n && s->columns == 1)
-            hf_json_number(j, key, s->value[i]);
-        else if (s->n)
-            hf_json_list(j, key, s->value + (size_t)i * (size_t)s->columns, s->columns);
-        else if (m->input_text[a].n)
-            hf_json_text(j, key, hf_texts_at(&m->input_text[a], i));
-    }
-    hf_json_close(j, '}');
-}
-
-/* Writes the verdict on each requirement. */
-static void write_rows(const hf_merged *m, int i, hf_json *j)
-{
-    hf_json_open(j, "rows", '[');
-    for (int row = 0; row < m->n_row && hf_merged_is_done(m, i); row++) {
-        size_t at = (size_t)i * (size_t)m->n_row + (size_t)row;
-        double verdict = m->row_verdict.value[at];
-        bool is_known = verdict >= 0 && verdict < HF_VERDICT_N;
-        hf_json_open(j, NULL, '{');
-        hf_json_text(j, "name", hf_texts_at(&m->row_name, row));
-        hf_json_text(j, "verdict", hf_verdict_word[is_known ? (int)verdict : HF_VERDICT_NONE]);
-        if (m->row_value.n == m->n) hf_json_number(j, "value", m->row_value.value[at]);
-        if (m->row_at_least.n == m->n) hf_json_number(j, "at_least", m->row_at_least.value[at]);
-        if (m->row_at_most.n == m->n) hf_json_number(j, "at_most", m->row_at_most.value[at]);
-        hf_json_number(j, "margin", m->row_margin.value[at]);
-        hf_json_number(j, "relative_margin", m->row_relative_margin.value[at]);
-        hf_json_close(j, '}');
-    }
-    hf_json_close(j, ']');
-}
-
-static void write_stages(const hf_merged *m, int i, hf_json *j)
-{
-    for (int k = 0; k < m->n_figure; k++) {
-        const hf_merged_figure *f = &m->figure[k];
-        bool is_last = k + 1 == m->n_figure;
-        if (k == 0 || f[-1].stage != f->stage) hf_json_open(j, hf_merged_stage_word(f->stage), '{');
-        if (f->stage == HF_MERGED_REQUIREMENTS && f[-1].stage != f->stage) write_rows(m, i, j);
-        if (*f->load_case && (k == 0 || strcmp(f[-1].load_case, f->load_case) != 0)) hf_json_open(j, f->load_case, '{');
-        hf_json_number(j, f->key, hf_merged_is_done(m, i) ? f->value.value[i] : (double)NAN);
-        if (*f->load_case && (is_last || strcmp(f[1].load_case, f->load_case) != 0)) hf_json_close(j, '}');
-        if (is_last || f[1].stage != f->stage) hf_json_close(j, '}');
-    }
-}
-
-/* Writes the best point. A point that does not pass is only the closest one. */
-static void write_best(const hf_merged *m, hf_json *j)
-{
-    bool is_judged = hf_merged_is_judged(m);
-    char text[HF_PRINT_ADVICE_SIZE];
-    int n_pass = 0;
-    if (m->best >= 0) {
-        bool is_best = !is_judged || m->judgement[m->best].verdict == HF_VERDICT_PASS;
-        hf_json_text(j, is_best ? "best" : "closest", hf_texts_at(&m->id, m->best));
-        if (m->lead >= 0) hf_json_text(j, "best_by", m->figure[m->lead].key);
-    }
-    if (!is_judged) return;
-    for (int i = 0; i < m->n; i++)
-        n_pass += m->judgement[i].verdict == HF_VERDICT_PASS;
-    hf_json_integer(j, "passing", n_pass);
-    hf_json_text(j, "advice", hf_print_study_advice(m, text));
-}
-
-void hf_print_study_json(const hf_merged *m, FILE *file)
-{
-    hf_json writer = {.file = file}, *j = &writer;
-    hf_json_open(j, NULL, '{');
-    hf_json_text(j, "title", hf_merged_heading(m));
-    hf_json_text(j, "result", hf_merged_stage_word(m->main));
-    write_best(m, j);
-    hf_json_open_rows(j, "points");
-    for (int i = 0; i < m->n; i++) {
-        hf_json_open_row(j);
-        hf_json_text(j, "id", hf_texts_at(&m->id, i));
-        hf_json_text(j, "status", hf_status_word((hf_status)m->status.value[i]));
-        if (*hf_texts_at(&m->reason, i)) hf_json_text(j, "reason", hf_texts_at(&m->reason, i));
-        if (hf_merged_is_judged(m)) hf_json_text(j, "verdict", hf_verdict_word[m->judgement[i].verdict]);
-        if (m->judgement[i].tightest >= 0)
-            hf_json_text(j, "tightest", hf_texts_at(&m->row_name, m->judgement[i].tightest));
-        write_input(m, i, j);
-        write_stages(m, i, j);
-        hf_json_close(j, '}');
-    }
-    hf_json_close(j, ']');
-    hf_json_line(j, " ");
-    hf_json_text(j, "file", m->path);
-    hf_json_end(j, false, NULL);
 }

@@ -2,6 +2,7 @@
  * what they have in common. */
 #pragma once
 
+#include "base/json.h"
 #include "out/merged.h"
 #include "out/print.h"
 
@@ -23,6 +24,13 @@ const char *hf_print_objective_words(const char *key, char words[HF_AXIS_NAME_SI
  * nothing is required. It states intervals for a study of one axis of numbers, and only between points that were
  * tried. */
 const char *hf_print_study_advice(const hf_merged *merged, char text[HF_PRINT_ADVICE_SIZE]);
+
+/* Formats whether the two best groups of replicates differ by more than the scatter of the search. The text is empty
+ * without two groups. */
+const char *hf_print_study_scatter(const hf_merged *merged, char text[HF_PRINT_ADVICE_SIZE]);
+
+/* Writes the member "replicates" with the groups and their statistics; nothing without replicates. */
+void hf_print_study_groups(const hf_merged *merged, hf_json *json);
 
 #define HF_PRINT_RANKING_SIZE 128
 /* Formats what ranks the points: "psi", or "failed requirements, then undecided ones, then smallest relative

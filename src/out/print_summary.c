@@ -272,9 +272,10 @@ static void print_refine(const hf_summary *s, bool is_result, FILE *f)
         return;
     }
     print_figures(s, "refine", &s->stage[HF_STAGE_REFINE].result, n_at_bound, f);
-    fprintf(f, "  %s, LM: ", is_result ? "the result" : "for comparison");
+    fprintf(f, "  %s, LM: ", is_result ? "the result" : "no better than the search");
     hf_print_steps(&s->refine, f);
     fprintf(f, ", %s\n", hf_print_duration(s->stage[HF_STAGE_REFINE].wall_s).text);
+    hf_print_optima(s, f);
 }
 
 static void print_stages(const hf_summary *s, hf_stage result, bool is_short, FILE *f)

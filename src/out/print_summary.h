@@ -22,6 +22,10 @@ void hf_print_details(const hf_summary *summary, FILE *file);
 /* Prints a line for each limit that the design of a stage reaches. */
 void hf_print_held(const hf_held_limits *held, FILE *file);
 
+/* Prints a line with the distinct optima of a refinement from several starts: their merits, and how many of the
+ * refinements found each. */
+void hf_print_optima(const hf_summary *summary, FILE *file);
+
 /* Prints an objective by its name in the file with its value: in SI units as in merit and weights, or lengths in mm. */
 void hf_print_objective(const char *before, const char *name, double value, bool in_SI, FILE *file);
 

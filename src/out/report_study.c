@@ -88,9 +88,9 @@ static void write_inputs(const hf_merged *m, FILE *f)
 #define WORD_SIZE (HF_SET_NAME_SIZE + 16)
 
 /* Returns the stage of a figure on the page, where each load case is a stage of its own. */
-static const char *stage_word(const hf_merged_figure *figure, char word[WORD_SIZE])
+static const char *stage_word(const hf_merged *m, const hf_merged_figure *figure, char word[WORD_SIZE])
 {
-    if (!*figure->load_case) return hf_merged_stage_word(figure->stage);
+    if (!*figure->load_case) return hf_merged_stage_word(m, figure->stage);
     snprintf(word, WORD_SIZE, "load case %s", figure->load_case);
     return word;
 }
@@ -107,7 +107,7 @@ static void write_outputs(const hf_merged *m, FILE *f)
                        hf_merged_find(m, first->stage, first->stage == HF_MERGED_BUILT ? "psi_95_m" : "psi_m");
         if (has_psi) {
             fprintf(f, "%s\n{", comma);
-            hf_json_text(&(hf_json){.file = f}, "stage", stage_word(first, word));
+            hf_json_text(&(hf_json){.file = f}, "stage", stage_word(m, first, word));
             comma = ",";
         }
         for (next = k; next < m->n_figure; next++) {
@@ -130,7 +130,7 @@ static void write_figures(const hf_merged *m, FILE *f)
     for (int k = 0; k < m->n_figure; k++) {
         const hf_merged_figure *figure = &m->figure[k];
         hf_json_open(&j, NULL, '{');
-        hf_json_text(&j, "stage", stage_word(figure, word));
+        hf_json_text(&j, "stage", stage_word(m, figure, word));
         hf_json_text(&j, "key", figure->key);
         hf_json_text(&j, "unit", hf_ledger_unit(figure->key));
         char words[HF_AXIS_NAME_SIZE];
@@ -142,7 +142,7 @@ static void write_figures(const hf_merged *m, FILE *f)
         hf_json_close(&j, '}');
     }
     hf_json_close(&j, ']');
-    hf_json_text(&j, "main", hf_merged_stage_word(m->main));
+    hf_json_text(&j, "main", hf_merged_stage_word(m, m->main));
     hf_json_integer(&j, "best", m->best);
 }
 
@@ -153,6 +153,7 @@ static void write_verdicts(const hf_merged *m, FILE *f)
     char text[HF_PRINT_ADVICE_SIZE];
     hf_json_text(&j, "ranked_by", hf_print_study_ranking(m, text));
     hf_json_text(&j, "advice", hf_print_study_advice(m, text));
+    hf_print_study_groups(m, &j);
     hf_json_open(&j, "verdict", '[');
     for (int i = 0; i < m->n; i++)
         hf_json_text(&j, NULL, hf_verdict_word[m->judgement[i].verdict]);

@@ -14,6 +14,7 @@
 #include "run/problem_parts.h"
 #include "search/chord.h"
 #include "search/refine.h"
+#include "search/restart.h"
 #include "search/swarm.h"
 #include "solve/prestress.h"
 #include <hifdm/pattern.h>
@@ -328,7 +329,8 @@ static hf_status time_refine(hf_check *c, const hf_evaluator *v, const hf_popula
     }
     if (c->n_step > o->refine_steps) c->n_step = o->refine_steps;
     c->step_s = step_s;
-    c->refine_s = t.begin_s - begin_s + step_s * ((double)c->n_step * (o->n_front > 0 ? o->front_points : 1));
+    int n_run = o->n_front > 0 ? o->front_points : o->method == HF_OPTIMIZE_AUTO ? 1 + HF_RESTARTS : 1;
+    c->refine_s = t.begin_s - begin_s + step_s * ((double)c->n_step * n_run);
     c->advises_fewer = c->refine_s > LONG_S || c->memory.refine > LARGE_BYTES;
     c->at_most_s += c->refine_s;
     return HF_OK;
@@ -339,6 +341,7 @@ static hf_status time_optimisation(hf_check *c, const hf_evaluator *v)
     const hf_problem *p = &c->problem;
     const hf_optimiser_kind *kind = hf_optimiser_plan_of(&p->settings.optimize).kind;
     hf_optimiser o = {0};
+    hf_problem_limit_search(&c->problem);
     hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->initial, &o);
     if (status == HF_OK && kind) status = time_search(c, v, &o.population);
     if (status == HF_OK && c->refines) status = time_refine(c, v, &o.population);

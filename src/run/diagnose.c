@@ -636,36 +636,38 @@ static const char *begin_with(const char *advice, char text[HF_FEASIBLE_ADVICE_S
     return text;
 }
 
-hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const char *advice, hf_messages *messages)
+hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const double *nearest, const char *advice,
+                               hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     long above = of->n_evaluation_above_cap, shapeless = of->n_evaluation_infeasible - above;
     const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
-    hf_form_result base;
+    const char *which = nearest ? "nearest" : "initial";
+    hf_form_result shown;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
-    name_broken(p, of->initial, &base, broken);
+    name_broken(p, nearest ? nearest : of->initial, &shown, broken);
     bool is_required = p->objectives.constraints;
     if (above > 0 && (o->n_limit > 0 || is_required))
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: the search found no feasible design, because %ld of %ld evaluations exceed "
-                        "optimize.limits%s or boundary_ratio_cap%s%s. %s%soosen the limits, or widen %s%s",
-                        above, of->n_evaluation, is_required ? ", requirements" : "",
-                        *broken ? "; of the initial design, the" : "", broken + (*broken == ':'),
+                        "optimize.limits%s or boundary_ratio_cap%s%s%s%s. %s%soosen the limits, or widen %s%s",
+                        above, of->n_evaluation, is_required ? ", requirements" : "", *broken ? "; of the " : "",
+                        *broken ? which : "", *broken ? " design, the" : "", broken + (*broken == ':'),
                         begin_with(advice, first), *advice ? "l" : "L", wider,
-                        hf_no_design_cap(p, base.boundary_tension_ratio, hint));
+                        hf_no_design_cap(p, shown.boundary_tension_ratio, hint));
     if (above == 0)
         return hf_error(messages, HF_NO_FEASIBLE,
                         "optimize: the search found no feasible design, because none of %ld evaluations has a shape "
                         "(%s). Narrow %s to keep designs closer to the initial design",
                         shapeless, hf_status_text(of->trial_status[0]), wider);
-    char of_initial[64] = "has no shape", others[64] = "";
-    if (isfinite(base.boundary_tension_ratio))
-        snprintf(of_initial, sizeof of_initial, "has the ratio %.4g", base.boundary_tension_ratio);
+    char ratio[64] = "has no shape", others[64] = "";
+    if (isfinite(shown.boundary_tension_ratio))
+        snprintf(ratio, sizeof ratio, "has the ratio %.4g", shown.boundary_tension_ratio);
     if (shapeless > 0) snprintf(others, sizeof others, ", %ld have no shape", shapeless);
     return hf_error(messages, HF_NO_FEASIBLE,
                     "optimize: the search found no feasible design, because %ld of %ld evaluations are above "
-                    "boundary_ratio_cap %g%s. The initial design %s. Raise optimize.boundary_ratio_cap, or widen %s%s",
-                    above, of->n_evaluation, o->boundary_ratio_cap, others, of_initial, wider,
+                    "boundary_ratio_cap %g%s. The %s design %s. Raise optimize.boundary_ratio_cap, or widen %s%s",
+                    above, of->n_evaluation, o->boundary_ratio_cap, others, which, ratio, wider,
                     hf_no_design_cap(p, INFINITY, hint));
 }
 

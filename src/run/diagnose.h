@@ -31,10 +31,11 @@ hf_status hf_reach_check(const hf_problem *problem, hf_messages *messages);
 #define HF_NO_DESIGN_SIZE 1024
 #define HF_NO_DESIGN_HINT_SIZE 192
 
-/* Reports that no individual of any generation was feasible. `advice` is that of hf_feasible_check. Returns
- * HF_NO_FEASIBLE, with a message. */
-hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, const char *advice,
-                               hf_messages *messages);
+/* Reports that no individual of any generation was feasible. `nearest` [n_variable] is the design that violates the
+ * constraints least, or NULL if none has a shape; `advice` is that of hf_feasible_check. Returns HF_NO_FEASIBLE, with a
+ * message. */
+hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, const double *nearest,
+                               const char *advice, hf_messages *messages);
 
 /* Writes why Levenberg-Marquardt found no feasible design and ended with this status at this one, the nearest. Both
  * designs have [n_variable] values; `advice` is that of hf_feasible_check. Overwrites the shape in the problem's

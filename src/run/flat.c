@@ -3,6 +3,7 @@
  *     open: case or arrays of a net -> model
  *     form: shape of the case -> initial design and batch, once
  *     evaluate, shape, slopes: designs -> figures, shape, derivatives
+ *     residuals, vjp: design -> residuals, derivatives, products
  *     run: the whole run, with its own problem -> result file and summary
  *     text, ints, reals: read what these calls left in the handle */
 #include <hifdm/flat.h>
@@ -254,6 +255,7 @@ const char *hf_flat_text(hf_flat *f, const char *list, int i)
     if (!strcmp(list, "node_id")) return word_at(p->scene.node_id, p->scene.n_node, i);
     if (!strcmp(list, "cable_id")) return word_at(p->scene.cable_id, p->scene.n_cable, i);
     if (!strcmp(list, "set_name")) return word_at(p->scene.set_name, p->scene.n_set, i);
+    if (!strcmp(list, "block")) return hf_problem_block(p, i, f->text) < 0 ? NULL : f->text;
     if (!strcmp(list, "slope")) return i >= hf_problem_n_slope(p) ? NULL : hf_problem_slope_name(p, i, f->text);
     return NULL;
 }
@@ -275,6 +277,15 @@ static int copy(const void *from, int n, size_t size, void *to)
     return n;
 }
 
+static int copy_block_rows(const hf_flat *f, int *to)
+{
+    char name[HF_OBJECTIVE_NAME_SIZE];
+    int n = 0;
+    for (int rows; (rows = hf_problem_block(&f->problem, n, name)) >= 0; n++)
+        if (to) to[n] = rows;
+    return n;
+}
+
 int hf_flat_ints(const hf_flat *f, const char *name, int *to)
 {
     const hf_scene *s = &f->problem.scene;
@@ -285,6 +296,7 @@ int hf_flat_ints(const hf_flat *f, const char *name, int *to)
     if (!strcmp(name, "group")) return copy_bytes(s->group, s->n_cable, to);
     if (!strcmp(name, "law")) return copy_bytes(s->law, s->n_cable, to);
     if (!strcmp(name, "variable_cable")) return copy(m->variable_cable, m->n_variable, sizeof *to, to);
+    if (!strcmp(name, "block_rows")) return copy_block_rows(f, to);
     if (!strcmp(name, "variable_leader")) return copy(m->variable_leader, m->n_variable, sizeof *to, to);
     if (!strcmp(name, "set_start")) return copy(s->set_start, s->n_set + 1, sizeof *to, to);
     if (!strcmp(name, "set_cable")) return copy(s->set_cable, s->n_set ? s->set_start[s->n_set] : 0, sizeof *to, to);
@@ -459,6 +471,20 @@ int hf_flat_slopes(hf_flat *f, int n, const double *design, double *slope)
             to[k] = (double)NAN;
     }
     return HF_OK;
+}
+
+int hf_flat_residuals(hf_flat *f, const double *design, int blocks, double *residual, double *jacobian)
+{
+    if (!begins(f, f->is_ready, NEEDS_SHAPE)) return HF_BAD_USAGE;
+    TRY(check_designs(f, 1, design));
+    return (int)hf_problem_residuals(&f->problem, design, (unsigned)blocks, residual, jacobian, &f->messages);
+}
+
+int hf_flat_vjp(hf_flat *f, const double *design, int blocks, const double *vector, double *product)
+{
+    if (!begins(f, f->is_ready, NEEDS_SHAPE)) return HF_BAD_USAGE;
+    TRY(check_designs(f, 1, design));
+    return (int)hf_problem_vjp(&f->problem, design, (unsigned)blocks, vector, product, &f->messages);
 }
 
 /* ---- a run ---- */

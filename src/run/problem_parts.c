@@ -377,6 +377,14 @@ const char *hf_problem_no_slopes(const hf_problem *p)
            "form.prestress exact; give optimize.variables, as [{set: boundary, vary: force_density, range: 10 %}]";
 }
 
+void hf_problem_limit_search(hf_problem *p)
+{
+    hf_optimize_settings *o = &p->settings.optimize;
+    if (o->method != HF_OPTIMIZE_AUTO || o->n_front > 0 || !hf_refine_applies(&p->evaluator)) return;
+    int most = hf_refine_generations(&p->evaluator, o->population);
+    if (o->generations > most) o->generations = most;
+}
+
 void hf_problem_warn_of_refine(const hf_problem *p, hf_messages *messages)
 {
     const hf_optimize_settings *o = &p->settings.optimize;

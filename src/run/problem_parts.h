@@ -36,6 +36,9 @@ hf_status hf_problem_allocate(hf_problem *problem, hf_messages *messages);
  * reach or a method that the net does not allow. */
 hf_status hf_problem_base(hf_problem *problem, hf_messages *messages);
 
+/* Limits the generations of method `auto` to the operations of about one refinement, if designs have derivatives. */
+void hf_problem_limit_search(hf_problem *problem);
+
 /* Returns why the designs of the problem have no derivatives (hf_refine_applies). If the default variables are the
  * reason, the text proposes others. */
 const char *hf_problem_no_slopes(const hf_problem *problem);

@@ -66,11 +66,12 @@ hf_run_stage hf_stage_form;
 /* Prepares the initial design with its objectives, the batch and the optimiser. It allocates everything that the
  * generations need before the first one. If there is no design variable, it only warns. */
 hf_run_stage hf_stage_begin;
-/* Evolves generations, each stored when it is evaluated, and stores the best individual. Also returns
- * HF_NO_FEASIBLE. */
+/* Evolves generations, each stored when it is evaluated, and stores the best individual. If no individual is feasible,
+ * the refinement starts from the individual nearest to the constraints. Returns HF_NO_FEASIBLE if there is no
+ * refinement. */
 hf_run_stage hf_stage_search;
-/* Refines the best individual, or the initial design if no search was run. Does nothing if optimize.refine does not ask
- * for it. */
+/* Refines the best individual, or the initial design if no search was run. The better design is the result. Does
+ * nothing if hf_stage_wants_refine returns false. Returns HF_NO_FEASIBLE if the run has no feasible design. */
 hf_run_stage hf_stage_refine;
 /* Takes a point of an earlier front as the design. */
 hf_run_stage hf_stage_point;
@@ -102,6 +103,10 @@ hf_status hf_tolerance_stage_judge(const hf_run *run, const hf_tolerance_design 
  * without the far field; or an error of the store. */
 hf_status hf_stage_measure(hf_run *run, hf_stage stage, const hf_workspace *workspace, hf_summary *summary,
                            hf_messages *messages);
+
+/* Returns true if the run refines its best design: the method ends with it, optimize.refine is true, or it is cheap or
+ * the only way to a feasible design. */
+bool hf_stage_wants_refine(const hf_run *run, const hf_summary *summary);
 
 /* Counts the design variables at their bounds. */
 void hf_stage_count_at_bounds(const hf_population *population, const double *design, int *at_lower, int *at_upper);

@@ -239,3 +239,12 @@ hf_status hf_stage_take(hf_run *r, hf_workspace *w, hf_messages *messages)
     r->shape = w;
     return p->load_cases.n ? hf_load_case_stage_take(p, w, &r->cases, messages) : HF_OK;
 }
+
+void hf_stage_count_at_bounds(const hf_population *p, const double *design, int *at_lower, int *at_upper)
+{
+    *at_lower = *at_upper = 0; /* a resumed run has the counts of the session before */
+    for (int k = 0; k < p->n_variable; k++) {
+        *at_lower += design[k] <= p->lower[k];
+        *at_upper += design[k] >= p->upper[k];
+    }
+}

@@ -12,9 +12,11 @@
 #include "base/clock.h"
 #include "run/problem_parts.h"
 #include "search/refine.h"
+#include "search/restart.h"
 #include "solve/certificate.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define PUBLISH_AFTER_S 1.0 /* a shorter refinement publishes no file between steps */
 #define LATELY 10           /* steps whose gain a warning about convergence reports */
@@ -169,24 +171,73 @@ static hf_status find_steps(hf_run *r, hf_summary *s, hf_refine_result *outcome,
         note_stop(&q, r->stopped_at);
         return HF_INTERRUPTED;
     }
-    if (status == HF_OK && r->plan.ends_with_refine) warn_of_steps(&q, outcome);
+    if (status == HF_OK) warn_of_steps(&q, outcome);
+    return status;
+}
+
+/* ---- restarts ---- */
+
+/* Notifies the observer of a step of a restart. Returns HF_INTERRUPTED if the run must stop. */
+static hf_status between_restarted_steps(void *context, const hf_refine_progress *now)
+{
+    steps *q = context;
+    q->now = *now;
+    q->now.is_last = false;
+    tell_step(q);
+    return hf_run_must_stop(q->run) ? HF_INTERRUPTED : HF_OK;
+}
+
+/* Refines the design of a finished refinement from other starts, if the method asks for it. They are not stored: a
+ * resumed run takes them again. Returns HF_OK, HF_INTERRUPTED or HF_NO_MEMORY. */
+static hf_status restart_steps(hf_run *r, hf_summary *s, hf_refine_result *outcome, hf_messages *messages)
+{
+    hf_problem *p = &r->problem;
+    hf_stage_summary *to = &s->stage[HF_STAGE_REFINE];
+    steps q = {.run = r, .summary = s, .messages = messages, .begin_s = hf_clock_s()};
+    hf_refine_watcher watcher = {.after = between_restarted_steps, .context = &q};
+    if (p->settings.optimize.method != HF_OPTIMIZE_AUTO || outcome->stop == HF_REFINE_MAX_ITERATIONS) return HF_OK;
+    free(to->optima); /* of an earlier session */
+    to->optima = calloc(1, sizeof *to->optima);
+    if (!to->optima) return HF_NO_MEMORY;
+    hf_status status = hf_restart_run(&p->batch, &r->optimiser.population, p->settings.optimize.refine_steps, &watcher,
+                                      r->design, &p->workspace, outcome, to->optima);
+    to->wall_s += hf_clock_s() - q.begin_s;
     return status;
 }
 
 /* ---- the stage ---- */
 
-/* Returns true if a refinement is to be run: as the result, on request, or by default if it is cheap. */
-static bool wants_refine(const hf_run *r, const hf_summary *s)
+/* Returns true if the search has found a feasible design. */
+static bool has_searched(const hf_summary *s)
 {
-    hf_refine_choice compare = r->problem.settings.optimize.refine;
-    if (r->plan.ends_with_refine || compare == HF_REFINE_TRUE) return true;
-    return compare == HF_REFINE_AUTO && hf_refine_is_cheap(&r->problem.evaluator, s->search.evaluations);
+    return s->stage[HF_STAGE_SEARCH].exists && s->stage[HF_STAGE_SEARCH].result.status == HF_OK;
 }
 
-/* Reports that no feasible design was found. After a search this is a warning, because the run has a design. */
-static hf_status tell_no_design(hf_run *r, hf_status status, hf_messages *messages)
+bool hf_stage_wants_refine(const hf_run *r, const hf_summary *s)
+{
+    const hf_optimize_settings *o = &r->problem.settings.optimize;
+    if (o->n_front > 0 || !hf_refine_applies(&r->problem.evaluator)) return false;
+    if (r->plan.ends_with_refine || o->refine == HF_REFINE_TRUE) return true;
+    return o->refine == HF_REFINE_AUTO &&
+           (!has_searched(s) || hf_refine_is_cheap(&r->problem.evaluator, s->search.evaluations));
+}
+
+/* Returns true if no feasible design of the search is better than the refined one. */
+static bool is_best(const hf_run *r, const hf_summary *s)
+{
+    const hf_population *p = &r->optimiser.population;
+    const hf_form_result *refined = &s->stage[HF_STAGE_REFINE].result;
+    if (!has_searched(s)) return true;
+    return refined->status == HF_OK &&
+           hf_population_merit(p, refined) <= hf_population_merit(p, &s->stage[HF_STAGE_SEARCH].result);
+}
+
+/* Reports that no feasible design was found. If the search has found one, this is a warning. */
+static hf_status tell_no_design(hf_run *r, const hf_summary *s, hf_status status, hf_messages *messages)
 {
     char why[HF_NO_DESIGN_SIZE];
+    if (r->plan.kind && !has_searched(s))
+        return hf_no_design_evolved(&r->problem, &r->optimiser.population, r->design, r->advice, messages);
     hf_no_design_to_refine(&r->problem, r->optimiser.population.initial, r->design, status, r->advice, why);
     if (!r->plan.kind) return hf_error(messages, HF_NO_FEASIBLE, "%s", why);
     hf_warning(messages, "%s", why);
@@ -197,19 +248,17 @@ hf_status hf_stage_refine(hf_run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *bounds = &r->optimiser.population;
     hf_refine_result outcome;
-    if (!hf_refine_applies(&r->problem.evaluator)) {
-        hf_problem_warn_of_refine(&r->problem, messages);
-        return HF_OK;
-    }
-    if (!wants_refine(r, s)) return HF_OK;
+    hf_problem_warn_of_refine(&r->problem, messages);
+    if (!hf_stage_wants_refine(r, s)) return HF_OK;
     for (int k = 0; k < bounds->n_variable; k++) /* the initial design may violate the bounds */
         r->design[k] = hf_population_clamp(bounds, k, r->design[k]);
     hf_status status = find_steps(r, s, &outcome, messages);
+    if (status == HF_OK) status = restart_steps(r, s, &outcome, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status == HF_INTERRUPTED || status == HF_IO || status == HF_EXISTS) return status;
-    if (status != HF_OK) return tell_no_design(r, status, messages);
+    if (status != HF_OK) return tell_no_design(r, s, status, messages);
     HF_TRY(evaluate_design(r, r->design, s));
-    s->refine.is_result = r->plan.ends_with_refine;
+    s->refine.is_result = is_best(r, s);
     s->refine.steps = outcome.iterations;
     s->refine.evaluations = outcome.evaluations;
     s->refine.algorithm_stop = outcome.stop;

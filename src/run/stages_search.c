@@ -12,8 +12,13 @@
 #include "base/clock.h"
 #include "run/problem_parts.h"
 #include "solve/certificate.h"
+#include "store/store_internal.h"
 
 #include <math.h>
+
+/* Time for which generations may wait for the journal, s. The computation of that time is lost if the process is
+ * killed. The tests of resuming and of interrupting pass from 0 to 0.5. */
+#define HOLD_S 0.02
 
 hf_status hf_stage_begin(hf_run *r, hf_summary *s, hf_messages *messages)
 {
@@ -31,9 +36,11 @@ hf_status hf_stage_begin(hf_run *r, hf_summary *s, hf_messages *messages)
     if (p->objectives.n_objective &&
         hf_objectives_measure(&p->objectives, &p->workspace, &p->point, form->objective, &form->merit) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for the objectives");
+    hf_problem_limit_search(p);
     HF_TRY(hf_store_restore_initial(r->store, p->model.n_variable, p->initial, messages));
     if (hf_problem_batch(p, r->request->control.threads) != HF_OK ||
-        hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->initial, &r->optimiser) != HF_OK)
+        hf_optimiser_create(r->plan.kind, &p->settings.optimize, &p->model, p->initial, &r->optimiser) != HF_OK ||
+        hf_optimiser_repair(&r->optimiser, &p->evaluator) != HF_OK)
         return hf_error(messages, HF_NO_MEMORY, "out of memory for %d individuals of %d design variables on %d threads",
                         p->settings.optimize.population, p->model.n_variable, p->batch.n_thread);
     s->threads = p->batch.n_thread;
@@ -138,6 +145,7 @@ static hf_status evolve(search *q)
     hf_run *r = q->run;
     const hf_population *p = &r->optimiser.population;
     q->start_s = hf_clock_s();
+    HF_TRY(hf_store_hold(r->store, HOLD_S, q->messages));
     bool more = true;
     if (q->first_generation > 0)
         more = hf_batch_next(&r->problem.batch, &r->optimiser, NULL, NULL);
@@ -155,22 +163,15 @@ static hf_status evolve(search *q)
         else
             more = hf_batch_next(&r->problem.batch, &r->optimiser, keep, q);
         HF_TRY(q->status);
-        if (stops) return HF_INTERRUPTED;
+        if (stops) break;
     }
+    HF_TRY(hf_store_hold(r->store, 0, q->messages));
+    if (more) return HF_INTERRUPTED;
     sum_up_generations(q);
     return HF_OK;
 }
 
 /* ---- the stage ---- */
-
-void hf_stage_count_at_bounds(const hf_population *p, const double *design, int *at_lower, int *at_upper)
-{
-    *at_lower = *at_upper = 0; /* a resumed run has the counts of the session before */
-    for (int k = 0; k < p->n_variable; k++) {
-        *at_lower += design[k] <= p->lower[k];
-        *at_upper += design[k] >= p->upper[k];
-    }
-}
 
 /* Stores the shape of the best individual. That is in the last generation (elitism), and evaluating it again for its
  * shape gives the same bits. */
@@ -186,17 +187,36 @@ static hf_status store_best(hf_run *r, hf_summary *s, hf_messages *messages)
     return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, r->design, messages);
 }
 
+/* Returns the individual with the least violation, from which a refinement can find a feasible design, or -1 if none
+ * has a shape. */
+static int least_violation(const hf_population *p)
+{
+    int nearest = -1;
+    double least = INFINITY;
+    for (int i = 0; i < p->n_individual; i++) {
+        double violation = hf_population_violation(&p->result[i]);
+        if (!(violation < least)) continue;
+        nearest = i;
+        least = violation;
+    }
+    return nearest;
+}
+
 hf_status hf_stage_search(hf_run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
     search q = {.run = r, .summary = s, .messages = messages};
+    hf_result_blank(&s->stage[HF_STAGE_SEARCH].result);
     s->stage[HF_STAGE_SEARCH].result.status = HF_NO_FEASIBLE;
     HF_TRY(hf_problem_share(&r->problem, messages));
     s->search.solver = r->problem.solver;
     HF_TRY(begin_generations(&q));
     if (hf_run_must_stop(r)) return HF_INTERRUPTED;
     HF_TRY(evolve(&q));
-    if (p->best < 0) return hf_no_design_evolved(&r->problem, p, r->advice, messages);
-    r->design = p->design + (size_t)p->best * (size_t)p->n_variable;
-    return store_best(r, s, messages);
+    int start = p->best >= 0 ? p->best : least_violation(p);
+    if (p->best < 0 && (start < 0 || !hf_stage_wants_refine(r, s)))
+        return hf_no_design_evolved(
+            &r->problem, p, start < 0 ? NULL : p->design + (size_t)start * (size_t)p->n_variable, r->advice, messages);
+    r->design = p->design + (size_t)start * (size_t)p->n_variable;
+    return p->best >= 0 ? store_best(r, s, messages) : HF_OK;
 }

@@ -6,6 +6,8 @@
  * Contents: ask and tell - the methods of a case */
 #include <hifdm/optimiser.h>
 
+#include "search/repair.h"
+
 #include <assert.h>
 #include <stddef.h>
 
@@ -26,6 +28,11 @@ hf_status hf_optimiser_create(const hf_optimiser_kind *kind, const hf_optimize_s
     return HF_OK;
 }
 
+hf_status hf_optimiser_repair(hf_optimiser *o, const hf_evaluator *evaluator)
+{
+    return hf_repair_create(evaluator, &o->population, &o->repair);
+}
+
 void hf_optimiser_tell(hf_optimiser *o)
 {
     if (o->is_fresh) {
@@ -41,17 +48,20 @@ bool hf_optimiser_begin(hf_optimiser *optimiser)
     assert(optimiser->kind);
     if (optimiser->population.stop_reason != HF_POPULATION_RUNNING) return false;
     optimiser->kind->begin(optimiser->state, &optimiser->population);
+    if (optimiser->repair) hf_repair_begin(optimiser->repair, &optimiser->population);
     return true;
 }
 
 void hf_optimiser_propose(hf_optimiser *optimiser, int i)
 {
     optimiser->kind->propose(optimiser->state, &optimiser->population, &optimiser->next, i);
+    if (optimiser->repair && optimiser->next.pending[i]) hf_repair_child(optimiser->repair, &optimiser->next, i);
 }
 
 void hf_optimiser_end(hf_optimiser *optimiser)
 {
     hf_population_advance(&optimiser->population, &optimiser->next);
+    optimiser->population.is_moved = optimiser->repair && hf_repair_is_active(optimiser->repair);
     optimiser->is_fresh = true;
 }
 
@@ -67,6 +77,7 @@ bool hf_optimiser_next(hf_optimiser *optimiser)
 void hf_optimiser_free(hf_optimiser *optimiser)
 {
     if (optimiser->kind) optimiser->kind->free(optimiser->state);
+    hf_repair_free(optimiser->repair);
     hf_population_free(&optimiser->population);
     *optimiser = (hf_optimiser){0};
 }

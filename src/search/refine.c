@@ -14,9 +14,11 @@
 
 #include "linalg/dot.h"
 #include "net/symmetry.h"
+#include "search/chord.h"
 #include "search/refine_problem.h"
 #include "solve/limits.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -67,6 +69,7 @@
 #define NEWTON_STEPS 5
 #define CHORD_STEPS 4
 #define UNNOTICED 2e8
+#define MODEL_MAX 1e7 /* derivatives of positions that a search may keep: 80 MB */
 
 /* ---- what it costs ---- */
 
@@ -79,19 +82,28 @@ bool hf_refine_applies(const hf_evaluator *v)
     return v->model->has_newton && v->model->n_variable > 0;
 }
 
+/* Returns the operations of the derivatives of a shape: a factorisation, and a solve per variable. *newton receives
+ * those of a form-finding by Newton's method, and *evaluation those of one evaluation of the genetic algorithm. */
+static double count_model(const hf_evaluator *v, double *newton, double *evaluation)
+{
+    const hf_model *m = v->model;
+    double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3;
+    double factor = n_dof * width * width, solve = 4 * n_dof * width;
+    *newton = NEWTON_STEPS * (factor + solve);
+    *evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : *newton;
+    return factor + m->n_leader * solve;
+}
+
 /* Returns the operations of one step. *evaluation_of_ga receives those of one evaluation of the genetic algorithm. */
 static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
 {
-    const hf_model *m = v->model;
-    double n_dof = 3.0 * m->n_free, width = 3.0 * m->half_bandwidth + 3, n = m->n_leader;
-    double factor = n_dof * width * width, solve = 4 * n_dof * width, newton = NEWTON_STEPS * (factor + solve);
-    double evaluation = v->solver == HF_SOLVER_CHORD ? CHORD_STEPS * solve : newton;
-    double n_row = v->objectives && v->objectives->nets ? v->objectives->n_row : 3.0 * m->n_inner_node;
-    double step = STEP_EVALUATIONS * newton + factor + n * solve + n * n * (n_row + 2 * n);
+    double newton, evaluation, model = count_model(v, &newton, &evaluation), n = v->model->n_leader;
+    double n_row = v->objectives && v->objectives->nets ? v->objectives->n_row : 3.0 * v->model->n_inner_node;
+    double step = STEP_EVALUATIONS * newton + model + n * n * (n_row + 2 * n);
     for (int i = 0; v->objectives && v->objectives->nets && i < hf_objectives_nets_count(v->objectives->nets); i++) {
         if (!hf_objectives_are_over(v->objectives, i)) continue;
         evaluation += newton;
-        step += STEP_EVALUATIONS * newton + newton + factor + n * solve;
+        step += STEP_EVALUATIONS * newton + newton + model;
     }
     *evaluation_of_ga = evaluation;
     return step;
@@ -107,6 +119,20 @@ bool hf_refine_is_cheap(const hf_evaluator *v, long n_evaluation)
 {
     double evaluation, step = count_step(v, &evaluation);
     return STEPS_EXPECTED * step <= fmax(UNNOTICED, (double)n_evaluation * evaluation / 10);
+}
+
+bool hf_refine_model_is_cheap(const hf_evaluator *v, int population)
+{
+    hf_evaluator of_search = *v;
+    if (v->solver == HF_SOLVER_AUTO && hf_chord_applies(v)) of_search.solver = HF_SOLVER_CHORD;
+    double newton, evaluation, model = count_model(&of_search, &newton, &evaluation);
+    return model <= evaluation * population && 3.0 * v->model->n_free * v->model->n_leader <= MODEL_MAX;
+}
+
+int hf_refine_generations(const hf_evaluator *v, int population)
+{
+    double evaluation, step = count_step(v, &evaluation);
+    return (int)fmin(fmax(STEPS_EXPECTED * step / (evaluation * population), 1), INT_MAX);
 }
 
 /* ---- one step ---- */

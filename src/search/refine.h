@@ -62,6 +62,13 @@ double hf_refine_operations(const hf_evaluator *evaluator);
  * not depend on the machine. */
 bool hf_refine_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 
+/* Returns true if the derivatives of one shape take at most as many operations as a generation of a population, and at
+ * most 80 MB. */
+bool hf_refine_model_is_cheap(const hf_evaluator *evaluator, int population);
+
+/* Returns the number of generations of a population that take about as many operations as one run, at least 1. */
+int hf_refine_generations(const hf_evaluator *evaluator, int population);
+
 /* Refines the design [n_variable], which has a shape and is within lower and upper [n_variable]. It is replaced by the
  * best design found, which is feasible and never worse. A start outside the limits is first moved into them. Linked
  * design variables keep their differences. watcher: NULL for none. workspace is scratch. Returns HF_OK, HF_NO_MEMORY,

@@ -233,13 +233,6 @@ static void linearise_front(hf_refine_problem *p)
             press(p, k, first, g->objective[k].n_row);
 }
 
-/* Writes the rates of the design by a class of design variables, as an hf_constraints_spread. */
-static const double *spread(const void *slopes, int i_class, double *move_m, double *tension_rate)
-{
-    hf_sensitivity_spread(slopes, i_class, move_m, tension_rate);
-    return hf_sensitivity_displacement(slopes, i_class, 0);
-}
-
 hf_status hf_refine_linearise(hf_refine_problem *p)
 {
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
@@ -256,8 +249,8 @@ hf_status hf_refine_linearise(hf_refine_problem *p)
     p->noise = find_noise(p);
     if (p->front) linearise_front(p);
     if (hf_refine_n_constraint(p) > 0)
-        HF_TRY(p->v.objectives->constraints->linearise(hf_residuals_point(&p->residuals)->constraints, p->n, spread,
-                                                       &p->slopes, p->constraint_rate));
+        HF_TRY(p->v.objectives->constraints->linearise(hf_residuals_point(&p->residuals)->constraints, p->n,
+                                                       hf_sensitivity_follow, &p->slopes, p->constraint_rate));
     hf_watch_linearise(&p->watch, &p->slopes, p->w);
     return HF_OK;
 }

@@ -396,3 +396,9 @@ void hf_sensitivity_spread(const hf_sensitivity *s, int i_class, double *move, d
     for (int e = 0; e < m->n_cable; e++)
         rate[e] = tension_rate(s, e, i_class);
 }
+
+const double *hf_sensitivity_follow(const void *sensitivity, int i_class, double *move, double *rate)
+{
+    hf_sensitivity_spread(sensitivity, i_class, move, rate);
+    return hf_sensitivity_displacement(sensitivity, i_class, 0);
+}

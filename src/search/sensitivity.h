@@ -72,3 +72,6 @@ static inline const double *hf_sensitivity_displacement(const hf_sensitivity *se
 /* Computes the derivatives by the step of one class: `move` [3][n_node] of the positions by row, and tension_rate
  * [n_cable]. */
 void hf_sensitivity_spread(const hf_sensitivity *sensitivity, int i_class, double *move, double *tension_rate);
+
+/* The same as an hf_constraints_spread; the context is the hf_sensitivity. */
+const double *hf_sensitivity_follow(const void *sensitivity, int i_class, double *move, double *tension_rate);

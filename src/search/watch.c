@@ -322,19 +322,25 @@ double hf_watch_relief(const hf_watch *q, int kind, int *objective)
     return t->ratio >= 0 ? t->value : 1; /* the limit is high <= cap low */
 }
 
+void hf_watch_extremes(const hf_watch *q, int k, const double *value, int *low, int *high)
+{
+    *low = *high = -1;
+    for (int i = 0; i < q->n; i++) {
+        if (q->item[i].ratio != k) continue;
+        if (*low < 0 || value[i] < value[*low]) *low = i;
+        if (*high < 0 || value[i] > value[*high]) *high = i;
+    }
+}
+
 /* Tests the limit high <= cap low of cap k for the maximum and the minimum of its predicted values. If it is violated
  * by more than *worst, writes it to *limit, updates *worst and returns true. */
 static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_limit *limit)
 {
     double cap = q->aim[k] * (1 - LIMIT_INSIDE);
-    const hf_watched *high = NULL, *low = NULL;
-    for (int i = 0; i < q->n; i++) {
-        const hf_watched *t = &q->item[i];
-        if (t->ratio != k) continue;
-        if (!high || t->predicted > high->predicted) high = t;
-        if (!low || t->predicted < low->predicted) low = t;
-    }
-    if (!high || !isfinite(cap)) return false;
+    int i_low, i_high;
+    hf_watch_extremes(q, k, q->predicted, &i_low, &i_high);
+    if (i_low < 0 || !isfinite(cap)) return false;
+    const hf_watched *low = &q->item[i_low], *high = &q->item[i_high];
     double excess = (high->predicted - cap * low->predicted) / fabs(high->predicted);
     if (!(excess > *worst)) return false;
     *worst = excess;

@@ -101,6 +101,9 @@ void hf_watch_learn(hf_watch *watch, const double *x, const hf_workspace *worksp
 enum { HF_WATCH_BOUND = 1, HF_WATCH_CAP, HF_WATCH_ROW, HF_WATCH_LEVEL, HF_WATCH_OBJECTIVE };
 bool hf_watch_worst(hf_watch *watch, const double *x, double worst, hf_quadratic_limit *limit);
 
+/* Finds the items of cap k with the minimum and the maximum of these values [n]; -1 if the cap has no item. */
+void hf_watch_extremes(const hf_watch *watch, int i_cap, const double *value, int *low, int *high);
+
 /* Returns by how much a limit of kind HF_WATCH_OBJECTIVE or above is relaxed per unit of the limit on objective *goal,
  * to which it belongs. */
 double hf_watch_relief(const hf_watch *watch, int kind, int *objective);

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +12,18 @@
 /* Memory, chunks and time depend on the constants below; the stored values do not. The tests of the store pass within
  * the ranges given. With a CHUNK_BYTES of 25 MiB or a CHUNK_MAX of 100 MiB the test generations_are_appended fails. */
 /* Bytes of waiting rows without designs. A generation that is larger waits alone. Tested from 1 to 50 MiB. */
-#define WAITING_BYTES (512 << 10)
-/* Chunks of designs that may wait, so that a run seldom waits for HDF5. Tested from 1 to 300. */
-#define DESIGN_CHUNKS 3
+#define WAITING_BYTES (1 << 20)
+/* Chunks of designs that may wait; half of them are written at a time. Tested from 1 to 300. */
+#define DESIGN_CHUNKS 4
+/* Maximum number of rows of a chunk that are no designs, so that a short run has no empty chunks. */
+#define CHUNK_ROWS 256
 /* Bytes of a chunk of a data set, which has as many rows as fit. Tested from 1 to 256 KiB. */
 #define CHUNK_BYTES (256 << 10)
 /* Bytes of a chunk of one row that is larger than CHUNK_BYTES: the size of HDF5's cache of a data set. Tested from 1
  * KiB to 1 MiB. */
 #define CHUNK_MAX (1 << 20)
+/* Factor of hashes: odd, so that multiplication by it is a bijection. */
+#define HASH_FACTOR 0x9e3779b97f4a7c15u
 /* Generations that are read at a time for the sums. Tested from 1 to 102400. */
 #define BLOCK 1024
 
@@ -35,6 +40,7 @@ typedef struct {
 /* Indices of the data sets. The figures of the individuals are those of <hifdm/result.h>: status first, then psi_m. */
 enum {
     HF_ROW_DESIGN,
+    HF_ROW_PLACE,
     HF_ROW_EVALUATED,
     HF_ROW_RESULT,
     HF_ROW_STATUS = HF_ROW_RESULT,
@@ -63,7 +69,14 @@ static bool has_last(const hf_generations *g)
     return g->every != 1;
 }
 
-/* Lists the data sets with their values in a population that hf_optimiser_tell has ranked. */
+/* Returns true for a data set that is stored with it: a value per individual, and the designs themselves. */
+static bool is_in_last(int i)
+{
+    return !is_series(i) && i != HF_ROW_PLACE;
+}
+
+/* Lists the data sets with their values in a population that hf_optimiser_tell has ranked. The designs are those of the
+ * whole population; `design_row` has no values here. */
 static void list_rows(const hf_population *now, generation_row row[HF_GENERATIONS_PIECES])
 {
     const hsize_t p = (hsize_t)now->n_individual, k = (hsize_t)now->n_variable;
@@ -73,6 +86,11 @@ static void list_rows(const hf_population *now, generation_row row[HF_GENERATION
     row[i] = (generation_row){{name, HF_KIND_##kind, rank, {1, p, 2}, units, description}, __VA_ARGS__}
     row[HF_ROW_DESIGN] = (generation_row){
         hf_layout_of_variables("design", now->has_rows, 3, (const hsize_t[3]){1, p, k}), ARRAY(design)};
+    row[HF_ROW_PLACE] = (generation_row){
+        {"design_row", HF_KIND_INT, 2, {1, p}, "", "row of `design` that has the design of each individual"},
+        NULL,
+        sizeof(int),
+        sizeof(int)};
     ROW(HF_ROW_EVALUATED, "evaluated", FLAG, 2, "",
         "TRUE = a trial was evaluated for this individual; FALSE: its result was known", ARRAY(pending));
     ROW(HF_ROW_TRIAL_STATUS, "trial_status", STATUS, 2, "", "of what was proposed for this individual",
@@ -175,8 +193,11 @@ static void lay_out(hf_arena *arena, hf_generations *g)
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++) {
         g->row[i] =
             hf_arena_take(arena, (size_t)(i == HF_ROW_DESIGN ? g->design_capacity : g->capacity), g->row_bytes[i]);
-        g->last[i] = hf_arena_take(arena, has_last(g) && !is_series(i), g->whole_bytes[i]);
+        g->last[i] = hf_arena_take(arena, has_last(g) && is_in_last(i), g->whole_bytes[i]);
     }
+    g->design_row = hf_arena_take(arena, (size_t)n_in_row(g), sizeof(int));
+    g->design = hf_arena_take(arena, (size_t)n_in_row(g), g->row_bytes[HF_ROW_DESIGN]);
+    g->hash = hf_arena_take(arena, (size_t)n_in_row(g), sizeof *g->hash);
 }
 
 bool hf_generations_are_of(const hf_generations *g, const hf_population *population)
@@ -210,15 +231,16 @@ hf_status hf_generations_create(hf_generations *g)
     g->base_psi_m = (double)NAN;
     measure_rows(g, g->n_individual, g->whole_bytes);
     measure_rows(g, n_in_row(g), g->row_bytes);
+    g->row_bytes[HF_ROW_DESIGN] = (size_t)g->n_variable * sizeof(double);
     g->payload_bytes = sizeof g->design_hash;
-    for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; i++) {
-        g->payload_bytes += g->whole_bytes[i];
+    for (int i = HF_ROW_PLACE; i < HF_GENERATIONS_PIECES; i++) {
+        g->payload_bytes += i == HF_ROW_PLACE ? 0 : g->whole_bytes[i];
         waiting += g->row_bytes[i];
     }
     g->capacity = how_many(WAITING_BYTES / waiting, g->limit);
-    g->design_chunk =
-        how_many(g->row_bytes[HF_ROW_DESIGN] ? CHUNK_BYTES / g->row_bytes[HF_ROW_DESIGN] : 1, g->capacity);
-    g->design_capacity = how_many((size_t)(DESIGN_CHUNKS * g->design_chunk), g->capacity);
+    int most = g->capacity * n_in_row(g);
+    g->design_chunk = how_many(g->n_variable ? CHUNK_BYTES / g->row_bytes[HF_ROW_DESIGN] : 1, most);
+    g->design_capacity = how_many((size_t)(DESIGN_CHUNKS * g->design_chunk + n_in_row(g)), most);
     HF_TRY(HF_ARENA_MAKE(&arena, lay_out(&arena, g)));
     g->block = arena.block;
     return HF_OK;
@@ -234,12 +256,12 @@ void hf_generations_free(hf_generations *g)
 
 bool hf_generations_are_full(const hf_generations *g)
 {
-    return g->n_waiting == g->capacity || g->n_design == g->design_capacity;
+    return g->n_waiting == g->capacity || g->n_design + n_in_row(g) > g->design_capacity;
 }
 
 bool hf_generations_are_due(const hf_generations *g)
 {
-    return g->n_waiting == g->capacity || g->n_design >= g->design_chunk;
+    return g->n_waiting == g->capacity || (g->n_design >= g->design_chunk && 2 * g->n_design >= g->design_capacity);
 }
 
 static char *slot(const hf_generations *g, int i)
@@ -250,21 +272,31 @@ static char *slot(const hf_generations *g, int i)
     return g->row[i] + (size_t)n * g->row_bytes[i];
 }
 
-/* Returns a hash of the designs that depends on every bit and on their order. Four interleaved chains, similar to
- * FNV-1a, take words of 8 bytes. */
-static uint64_t hash_designs(const hf_population *population)
+/* Returns a hash of a design that depends on every bit. Four interleaved chains, similar to FNV-1a, take words of 8
+ * bytes. */
+static uint64_t hash_design(const double *design, int n)
 {
     enum { CHAINS = 4 };
-    const uint64_t factor = 0x9e3779b97f4a7c15u; /* odd, so that multiplication by it is a bijection */
     uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
-    for (size_t i = 0; i < (size_t)population->n_individual * (size_t)population->n_variable; i++) {
+    for (int i = 0; i < n; i++) {
         uint64_t *h = &chain[i % CHAINS];
-        memcpy(&bits, &population->design[i], sizeof bits);
-        *h = (*h ^ bits) * factor;
+        memcpy(&bits, &design[i], sizeof bits);
+        *h = (*h ^ bits) * HASH_FACTOR;
         *h ^= *h >> 32;
     }
     for (int i = 0; i < CHAINS; i++)
-        all = (all ^ chain[i]) * factor, all ^= all >> 32;
+        all = (all ^ chain[i]) * HASH_FACTOR, all ^= all >> 32;
+    return all;
+}
+
+/* Returns a hash of all designs and of their order. known: hashes of the designs, or NULL. */
+static uint64_t hash_designs(const hf_population *population, const uint64_t *known)
+{
+    uint64_t all = 0;
+    for (int i = 0, k = population->n_variable; i < population->n_individual; i++) {
+        all = (all ^ (known ? known[i] : hash_design(population->design + (size_t)i * (size_t)k, k))) * HASH_FACTOR;
+        all ^= all >> 32;
+    }
     return all;
 }
 
@@ -277,57 +309,126 @@ static int best_of(const hf_population *p)
     return best;
 }
 
+/* Returns the row that the next design gets. */
+static int next_design_row(const hf_generations *g)
+{
+    return g->n_design_stored + g->n_design;
+}
+
+/* Adds the designs of a row of individuals that are not those of the row before, and the row of each. */
+static void add_designs(hf_generations *g, const double *design)
+{
+    size_t k = (size_t)g->n_variable, bytes = g->row_bytes[HF_ROW_DESIGN];
+    bool is_first = next_design_row(g) == 0;
+    for (int i = 0; i < n_in_row(g); i++) {
+        const double *now = design + (size_t)i * k;
+        double *before = g->design + (size_t)i * k;
+        if (!is_first && !memcmp(before, now, bytes)) continue;
+        memcpy(before, now, bytes);
+        memcpy(slot(g, HF_ROW_DESIGN), now, bytes);
+        g->design_row[i] = next_design_row(g);
+        g->hash[i] = hash_design(now, g->n_variable);
+        g->n_design++;
+    }
+    memcpy(slot(g, HF_ROW_PLACE), g->design_row, g->row_bytes[HF_ROW_PLACE]);
+}
+
 /* Adds the rows of individuals that the file keeps of a generation. The whole generation is in g->last already. */
 static void add_part(hf_generations *g, const hf_population *population)
 {
     bool is_best = g->every == HF_GENERATIONS_BEST;
     size_t first = is_best ? (size_t)best_of(population) : 0;
     if (!is_best && (g->n_stored + g->n_waiting) % g->every != 0) return;
-    for (int i = 0; !is_series(i); i++)
+    add_designs(g, population->design + first * (size_t)g->n_variable);
+    for (int i = HF_ROW_EVALUATED; !is_series(i); i++)
         if (g->row_bytes[i]) memcpy(slot(g, i), g->last[i] + first * g->row_bytes[i], g->row_bytes[i]);
-    g->n_design++;
 }
 
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece)
 {
     generation_row row[HF_GENERATIONS_PIECES];
+    const struct iovec none = {&g->design_hash, 0}; /* C allows no offset from NULL, not even 0 */
+    struct iovec designs = {population->design, g->whole_bytes[HF_ROW_DESIGN]}, places = none;
     list_rows(population, row);
     assert(g->n_waiting < g->capacity && hf_generations_are_of(g, population));
-    for (int i = 0; i < HF_GENERATIONS_PIECES; i++) {
+    for (int i = HF_ROW_EVALUATED; i < HF_GENERATIONS_PIECES; i++) {
         char *to = has_last(g) && !is_series(i) ? g->last[i] : slot(g, i);
         copy_values(&row[i], g->whole_bytes[i], true, to);
         if (piece) piece[i] = (struct iovec){to, g->whole_bytes[i]};
     }
+    if (has_last(g)) {
+        memcpy(g->last[HF_ROW_DESIGN], population->design, g->whole_bytes[HF_ROW_DESIGN]);
+        add_part(g, population);
+    } else {
+        int before = g->n_design;
+        designs.iov_base = slot(g, HF_ROW_DESIGN);
+        add_designs(g, population->design);
+        designs.iov_len = (size_t)(g->n_design - before) * g->row_bytes[HF_ROW_DESIGN];
+        places = (struct iovec){g->design_row, g->row_bytes[HF_ROW_PLACE]};
+    }
     if (piece) {
-        g->design_hash = hash_designs(population);
+        g->design_hash = hash_designs(population, has_last(g) ? NULL : g->hash);
         piece[HF_ROW_DESIGN] = (struct iovec){&g->design_hash, sizeof g->design_hash};
+        piece[HF_ROW_PLACE] = population->is_moved ? places : none;
+        piece[HF_GENERATIONS_PIECES] = population->is_moved ? designs : none;
     }
     tally(population, 1, g->count);
     if (g->n_stored + g->n_waiting == 0) g->base_psi_m = population->result[0].psi_m;
-    if (has_last(g))
-        add_part(g, population);
-    else
-        g->n_design++;
     g->n_waiting++;
 }
 
-bool hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_population *before,
-                                 hf_population *population)
+bool hf_generations_are_payload(const hf_generations *g, size_t bytes)
+{
+    size_t whole = g->payload_bytes + g->whole_bytes[HF_ROW_DESIGN], one = g->row_bytes[HF_ROW_DESIGN];
+    if (bytes == g->payload_bytes || (bytes == whole && has_last(g))) return true;
+    size_t least = g->payload_bytes + g->row_bytes[HF_ROW_PLACE];
+    return !has_last(g) && one && bytes >= least && bytes - least <= whole - g->payload_bytes &&
+           (bytes - least) % one == 0;
+}
+
+/* Copies the n_new designs of a payload, which are those of individuals with a new row of designs. The others have the
+ * designs of the generation before. Returns false if these are not n_new individuals. */
+static bool take_designs(const hf_generations *g, const char *places, const char *from, size_t n_new,
+                         hf_population *population)
+{
+    size_t bytes = g->row_bytes[HF_ROW_DESIGN];
+    int next = next_design_row(g), place;
+    for (int i = 0; i < g->n_individual; i++) {
+        memcpy(&place, places + (size_t)i * sizeof place, sizeof place);
+        bool is_new = place == next;
+        if (is_new ? n_new-- == 0 : next_design_row(g) == 0 || place != g->design_row[i]) return false;
+        memcpy((char *)population->design + (size_t)i * bytes,
+               is_new ? from : (const char *)g->design + (size_t)i * bytes, bytes);
+        from += is_new ? bytes : 0;
+        next += is_new;
+    }
+    return n_new == 0;
+}
+
+bool hf_generations_take_payload(const hf_generations *g, const void *payload, size_t bytes,
+                                 const hf_population *before, hf_population *population)
 {
     generation_row row[HF_GENERATIONS_PIECES];
     uint64_t hash;
     list_rows(population, row);
-    const char *from = payload;
+    const char *from = payload, *places = NULL;
     memcpy(&hash, from, sizeof hash);
     from += sizeof hash;
-    for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; from += g->whole_bytes[i++])
+    if (bytes > g->payload_bytes && !has_last(g)) {
+        places = from;
+        from += g->row_bytes[HF_ROW_PLACE];
+    }
+    for (int i = HF_ROW_EVALUATED; i < HF_GENERATIONS_PIECES; from += g->whole_bytes[i++])
         copy_values(&row[i], g->whole_bytes[i], false, (char *)from);
     for (int i = 0; i < population->n_individual && before; i++) {
         int kept = population->parent[2 * i];
         if (kept >= 0 && kept < population->n_individual && population->parent[2 * i + 1] == -1)
             hf_population_take_over(before, kept, population, i);
     }
-    return hash == hash_designs(population);
+    size_t left = bytes - (size_t)(from - (const char *)payload);
+    if (places && !take_designs(g, places, from, left / g->row_bytes[HF_ROW_DESIGN], population)) return false;
+    if (!places && left > 0) memcpy(population->design, from, left);
+    return hash == hash_designs(population, NULL);
 }
 
 /* Returns true if every value of an enumeration has a word. Values of other kinds need none. */
@@ -374,6 +475,12 @@ static bool is_stored(const hf_generations *g, int i)
     return i < HF_ROW_OBJECTIVE + g->n_objective || i >= HF_ROW_OBJECTIVE + HF_FRONT_OBJECTIVES_MAX;
 }
 
+/* Describes rows of designs: a design each. */
+static hf_hdf5_array array_of_designs(const hf_generations *g, int n)
+{
+    return hf_layout_of_variables("design", g->has_rows, 2, (const hsize_t[2]){(hsize_t)n, (hsize_t)g->n_variable});
+}
+
 /* Makes a data set with as many rows per chunk as fit, but no more than are written at a time. A row larger than
  * CHUNK_BYTES is divided along its other dimensions. */
 static void make_array(hf_hdf5 *io, hid_t group, const generation_row *row, size_t row_bytes, int rows)
@@ -391,11 +498,27 @@ static void make_array(hf_hdf5 *io, hid_t group, const generation_row *row, size
 static hid_t open_arrays(hf_hdf5 *io, const hf_generations *g, generation_row row[HF_GENERATIONS_PIECES])
 {
     list_empty(g, n_in_row(g), row);
+    row[HF_ROW_DESIGN].array = array_of_designs(g, 1);
     hid_t group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP);
     if (g->n_stored > 0 || hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name)) return group;
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++)
-        if (is_stored(g, i)) make_array(io, group, &row[i], g->row_bytes[i], g->capacity);
+        if (is_stored(g, i))
+            make_array(io, group, &row[i], g->row_bytes[i],
+                       i == HF_ROW_DESIGN ? g->design_chunk : how_many(CHUNK_ROWS, g->capacity));
     return group;
+}
+
+/* Writes the first n waiting designs. */
+static void write_designs(hf_hdf5 *io, hf_generations *g, hid_t group, int n)
+{
+    const hf_hdf5_array array = array_of_designs(g, n);
+    size_t bytes = g->row_bytes[HF_ROW_DESIGN];
+    char *from = g->row[HF_ROW_DESIGN];
+    if (n == 0) return;
+    hf_hdf5_write_rows(io, group, &array, (hsize_t)g->n_design_stored, from);
+    memmove(from, from + (size_t)n * bytes, (size_t)(g->n_design - n) * bytes);
+    g->n_design_stored += n;
+    g->n_design -= n;
 }
 
 /* Writes the n waiting rows of data set i. They are its last rows so far. */
@@ -415,7 +538,7 @@ static void write_last(hf_hdf5 *io, const hf_generations *g)
     hid_t group = hf_hdf5_make_group(io, HF_GENERATIONS_GROUP "/last");
     bool is_new = !hf_hdf5_has(io, group, row[HF_ROW_DESIGN].array.name);
     for (int i = 0; !is_series(i); i++) {
-        if (!is_stored(g, i)) continue;
+        if (!is_stored(g, i) || !is_in_last(i)) continue;
         if (is_new) make_array(io, group, &row[i], g->whole_bytes[i], 1);
         hf_hdf5_write_rows(io, group, &row[i].array, 0, g->last[i]);
     }
@@ -432,9 +555,9 @@ void hf_generations_make_room(hf_hdf5 *io, hf_generations *g)
         hf_generations_write(io, g);
     } else if (g->n_design >= g->design_chunk) {
         hid_t group = open_arrays(io, g, row);
-        write_row(io, g, group, row, HF_ROW_DESIGN, g->n_design);
+        write_designs(io, g, group,
+                      (g->n_design_stored + g->n_design) / g->design_chunk * g->design_chunk - g->n_design_stored);
         hf_hdf5_close(io, group);
-        g->n_design = 0;
     }
 }
 
@@ -444,22 +567,24 @@ void hf_generations_write(hf_hdf5 *io, hf_generations *g)
     if (g->n_waiting == 0 || io->status != HF_OK) return;
     hid_t group = open_arrays(io, g, row);
     int n_row = rows_of(g, g->n_stored + g->n_waiting) - rows_of(g, g->n_stored);
-    write_row(io, g, group, row, HF_ROW_DESIGN, g->n_design);
-    for (int i = HF_ROW_DESIGN + 1; i < HF_GENERATIONS_PIECES; i++)
+    write_designs(io, g, group, g->n_design);
+    for (int i = HF_ROW_PLACE; i < HF_GENERATIONS_PIECES; i++)
         write_row(io, g, group, row, i, is_series(i) ? g->n_waiting : n_row);
     hf_hdf5_close(io, group);
     if (has_last(g)) write_last(io, g);
     g->n_stored += g->n_waiting;
-    g->n_waiting = g->n_design = 0;
+    g->n_waiting = 0;
 }
 
 /* ---- putting back ---- */
 
 int hf_generations_count(hf_hdf5 *io, hf_generations *g)
 {
-    g->n_stored = 0;
-    if (hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible"))
+    g->n_stored = g->n_design_stored = 0;
+    if (hf_hdf5_has(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible")) {
         g->n_stored = hf_hdf5_length(io, io->file, HF_GENERATIONS_GROUP "/n_infeasible", g->limit);
+        g->n_design_stored = hf_hdf5_length(io, io->file, HF_GENERATIONS_GROUP "/design", INT_MAX);
+    }
     for (int i = 0; has_last(g) && g->n_stored > 0 && i < HF_GENERATIONS_COUNTS; i++)
         hf_hdf5_get(io, io->file, HF_GENERATIONS_GROUP "/last", count_name[i], HF_KIND_LONG, &g->count[i],
                     sizeof g->count[i]);
@@ -557,7 +682,23 @@ static void restore_counts(hf_hdf5 *io, hid_t group, const hf_generations *g, hf
     p->n_evaluation_above_cap = count[2];
 }
 
-void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population *population)
+/* Reads the designs of the last row of individuals. */
+static void read_designs(hf_hdf5 *io, hid_t group, hf_generations *g)
+{
+    generation_row row[HF_GENERATIONS_PIECES];
+    list_empty(g, n_in_row(g), row);
+    const hf_hdf5_array one = array_of_designs(g, 1);
+    read_some(io, group, &row[HF_ROW_PLACE], rows_of(g, g->n_stored) - 1, 1, g->design_row);
+    for (int i = 0; i < n_in_row(g) && io->status == HF_OK; i++) {
+        if (g->design_row[i] < 0 || g->design_row[i] >= g->n_design_stored)
+            hf_hdf5_damaged(io, group, row[HF_ROW_PLACE].array.name, "points to a design that is not there");
+        double *design = g->design + (size_t)i * (size_t)g->n_variable;
+        hf_hdf5_read_rows(io, group, &one, (hsize_t)g->design_row[i], design);
+        g->hash[i] = hash_design(design, g->n_variable);
+    }
+}
+
+void hf_generations_restore(hf_hdf5 *io, hf_generations *g, hf_population *population)
 {
     generation_row row[HF_GENERATIONS_PIECES];
     int last = g->n_stored - 1;
@@ -568,10 +709,12 @@ void hf_generations_restore(hf_hdf5 *io, const hf_generations *g, hf_population 
     hid_t group = hf_hdf5_open_group(io, HF_GENERATIONS_GROUP), whole = open_whole(io, g);
     population->generation = last;
     list_rows(population, row);
-    for (int i = 0; i < HF_GENERATIONS_PIECES && io->status == HF_OK; i++) {
+    read_designs(io, group, g);
+    if (!has_last(g)) memcpy(population->design, g->design, g->whole_bytes[HF_ROW_DESIGN]);
+    for (int i = has_last(g) ? 0 : HF_ROW_EVALUATED; i < HF_GENERATIONS_PIECES && io->status == HF_OK; i++) {
         bool is_alone = has_last(g) && !is_series(i);
         assert(g->whole_bytes[i] <= largest);
-        if (!is_stored(g, i)) continue;
+        if (!is_stored(g, i) || i == HF_ROW_PLACE) continue;
         hf_hdf5_read_rows(io, is_alone ? whole : group, &row[i].array, is_alone ? 0 : (hsize_t)last, values);
         if (io->status == HF_OK) copy_values(&row[i], g->whole_bytes[i], false, values);
     }

@@ -1,12 +1,14 @@
 /* Implements journal.h. Sections: file and lock, records, replay, rotation and end. */
 #include "store/journal.h"
 
+#include "base/clock.h"
 #include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/path.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +29,7 @@ typedef struct {
     int32_t generation;
 } record_head;
 _Static_assert(sizeof(record_head) == 16, "records have no padding");
+#define GENERATION_AT offsetof(record_head, generation) /* length and crc count the bytes from here on */
 
 /* ---- file and lock ---- */
 
@@ -144,6 +147,7 @@ hf_status hf_journal_restart(hf_journal *j, const char *identity, hf_messages *m
     if (hf_file_io_cut(j->file, 0) != 0 || write_header(j->file, identity) != 0)
         return fail(j, "write", j->path, messages);
     j->size = HEADER_BYTES;
+    j->n_held = 0;
     j->is_new = true;
     j->has_news = false;
     return HF_OK;
@@ -151,34 +155,61 @@ hf_status hf_journal_restart(hf_journal *j, const char *identity, hf_messages *m
 
 bool hf_journal_is_empty(const hf_journal *j)
 {
-    return j->size <= HEADER_BYTES;
+    return j->size <= HEADER_BYTES && j->n_held == 0;
 }
 
 /* ---- records ---- */
 
-hf_status hf_journal_append(hf_journal *j, int generation, const struct iovec *piece, int n, hf_messages *messages)
+/* Writes whole records, `bytes` in all. */
+static hf_status write_records(hf_journal *j, struct iovec *piece, int n, size_t bytes, hf_messages *messages)
 {
-    struct iovec part[HF_JOURNAL_PIECES + 1];
-    record_head head = {.magic = RECORD_MAGIC, .generation = generation};
-    size_t length = sizeof head.generation;
-    uLong crc = crc32(0, (const Bytef *)&head.generation, sizeof head.generation);
-    part[0] = (struct iovec){&head, sizeof head};
-    for (int i = 0; i < n; i++) {
-        part[i + 1] = piece[i];
-        length += piece[i].iov_len;
-        crc = crc32(crc, piece[i].iov_base, (uInt)piece[i].iov_len);
-    }
-    if (length > PAYLOAD_MAX) return hf_error(messages, HF_IO, "%s: a generation is larger than 2 GiB", j->result);
-    head.length = (uint32_t)length;
-    head.crc = (uint32_t)crc;
-    if (hf_file_io_write_pieces(j->file, part, n + 1) == 0) {
-        j->size += (int64_t)(sizeof head - sizeof head.generation + length);
+    if (hf_file_io_write_pieces(j->file, piece, n) == 0) {
+        j->size += (int64_t)bytes;
         j->has_news = true;
+        j->written_s = hf_clock_s();
         return HF_OK;
     }
     hf_status status = fail(j, "write", j->path, messages);
     if (hf_file_io_cut(j->file, j->size) == 0) lseek(j->file, j->size, SEEK_SET); /* if not, the CRC detects it */
     return status;
+}
+
+hf_status hf_journal_append(hf_journal *j, int generation, const struct iovec *piece, int n, hf_messages *messages)
+{
+    struct iovec part[HF_JOURNAL_PIECES + 1];
+    record_head head = {.magic = RECORD_MAGIC, .generation = generation};
+    size_t bytes = sizeof head;
+    part[0] = (struct iovec){&head, sizeof head};
+    for (int i = 0; i < n; i++) {
+        part[i + 1] = piece[i];
+        bytes += piece[i].iov_len;
+    }
+    if (bytes > PAYLOAD_MAX) return hf_error(messages, HF_IO, "%s: a generation is larger than 2 GiB", j->result);
+    head.length = (uint32_t)(bytes - GENERATION_AT);
+    if (j->n_held + bytes > HF_JOURNAL_HELD) HF_TRY(hf_journal_write(j, messages));
+    if (j->hold_s > 0 && !j->held) j->held = malloc(HF_JOURNAL_HELD); /* without it nothing waits */
+    if (!j->held || bytes > HF_JOURNAL_HELD) {
+        uLong crc = crc32(0, (const Bytef *)&head.generation, sizeof head.generation);
+        for (int i = 0; i < n; i++)
+            crc = crc32(crc, piece[i].iov_base, (uInt)piece[i].iov_len);
+        head.crc = (uint32_t)crc;
+        return write_records(j, part, n + 1, bytes, messages);
+    }
+    char *record = j->held + j->n_held, *to = record;
+    for (int i = 0; i <= n; to += part[i++].iov_len)
+        memcpy(to, part[i].iov_base, part[i].iov_len);
+    head.crc = (uint32_t)crc32(0, (const Bytef *)record + GENERATION_AT, (uInt)(bytes - GENERATION_AT));
+    memcpy(record, &head, sizeof head);
+    j->n_held += bytes;
+    return hf_clock_s() - j->written_s < j->hold_s ? HF_OK : hf_journal_write(j, messages);
+}
+
+hf_status hf_journal_write(hf_journal *j, hf_messages *messages)
+{
+    struct iovec piece = {j->held, j->n_held};
+    if (j->n_held == 0) return HF_OK;
+    j->n_held = 0;
+    return write_records(j, &piece, 1, piece.iov_len, messages);
 }
 
 hf_status hf_journal_tend(hf_journal *j, double now_s, hf_messages *messages)
@@ -293,6 +324,7 @@ hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
     close(j->file);
     j->file = file;
     j->size = HEADER_BYTES;
+    j->n_held = 0;
     j->has_news = false;
     return HF_OK;
 }
@@ -300,9 +332,13 @@ hf_status hf_journal_rotate(hf_journal *j, hf_messages *messages)
 void hf_journal_close(hf_journal *j, bool remove)
 {
     if (j->file >= 0) {
-        if (remove) unlink(j->path);
+        if (remove)
+            unlink(j->path);
+        else
+            (void)hf_journal_write(j, NULL);
         close(j->file);
     }
+    free(j->held);
     free(j->path);
     *j = (hf_journal){.file = -1};
 }

@@ -1,12 +1,13 @@
 /* journal - the file `<result>.journal` with the generations that the result file does not hold yet. A killed process
- * therefore loses none of them.
+ * therefore loses none of them, except those that waited for a common write.
  *
  *     8 bytes     "hifdm-j2"
  *     64 bytes    identity of the run
  *     records     magic, length and CRC-32 of the rest, generation, payload
  *
- * Each record is written by one writev(2). A process that is killed at any instant leaves whole records and at most one
- * incomplete record at the end. The next run cuts that record off. The file is synced every HF_JOURNAL_SYNC_S, so a
+ * Each record is written by one writev(2). With `hold_s` the records of short generations are written together, because
+ * a write costs as much as some evaluations. A process that is killed at any instant leaves whole records and at most
+ * one incomplete record at the end. The next run cuts that record off. The file is synced every HF_JOURNAL_SYNC_S, so a
  * power cut loses the records of that time at most.
  *
  * The journal is also the lock of the result. The lock is flock(2) on the journal, held from before the process looks
@@ -22,6 +23,7 @@
 #define HF_JOURNAL_SYNC_S 5.0 /* s; the tests of the store, of resuming and of interrupting pass with 0.5 to 50 */
 #define HF_JOURNAL_PIECES 32  /* maximum number of pieces of a payload */
 #define HF_JOURNAL_IDENTITY 64
+#define HF_JOURNAL_HELD (64 << 10) /* maximum number of bytes of records that wait */
 
 typedef struct {
     int file;           /* descriptor; -1: closed */
@@ -29,7 +31,11 @@ typedef struct {
     bool was_there;     /* another process has left it, perhaps with temporary files */
     const char *result; /* name of the result in messages; borrowed */
     char *path;         /* owned */
-    int64_t size;       /* bytes up to the end of the last whole record */
+    int64_t size;       /* bytes up to the end of the last whole record in the file */
+    double hold_s;      /* time for which records may wait; 0: none waits */
+    double written_s;   /* time of the last write */
+    char *held;         /* [HF_JOURNAL_HELD] records that wait, or NULL; owned */
+    size_t n_held;      /* their bytes */
     double synced_s;    /* time of the last sync, or of the first hf_journal_tend */
     bool has_news;      /* something was appended after that sync */
     char identity[HF_JOURNAL_IDENTITY + 1];
@@ -56,21 +62,26 @@ typedef hf_status hf_journal_take(void *context, int generation, const void *pay
 hf_status hf_journal_replay(hf_journal *journal, const char *identity, hf_journal_take *take, void *context,
                             hf_messages *messages);
 
-/* Appends a generation in n <= HF_JOURNAL_PIECES pieces. HF_OK: it survives the end of this process. HF_IO: none of it
- * is in the file, but all generations before it are. */
+/* Appends a generation in n <= HF_JOURNAL_PIECES pieces; an empty piece is not NULL. HF_OK: it survives the end of this
+ * process, or with hold_s it waits because the last write was less than hold_s ago. HF_IO: neither it nor any
+ * generation that waited is in the file, but all generations before them are. */
 hf_status hf_journal_append(hf_journal *journal, int generation, const struct iovec *piece, int n,
                             hf_messages *messages);
+
+/* Writes the waiting records. Returns HF_OK or HF_IO, as hf_journal_append. */
+hf_status hf_journal_write(hf_journal *journal, hf_messages *messages);
 
 /* Syncs the file if HF_JOURNAL_SYNC_S have passed since the last sync, and checks that the file still has its name. The
  * caller must call it regularly. now_s: present time, as hf_clock_s gives it. Returns HF_OK or HF_IO. */
 hf_status hf_journal_tend(hf_journal *journal, double now_s, hf_messages *messages);
 
-/* Replaces the journal by a new, empty one. The caller calls it when the result file holds all records. Returns HF_OK
- * or HF_IO. */
+/* Replaces the journal by a new, empty one. The caller calls it when the result file holds all records, also those that
+ * wait. Returns HF_OK or HF_IO. */
 hf_status hf_journal_rotate(hf_journal *journal, hf_messages *messages);
 
 /* Returns true if the journal has no records. */
 bool hf_journal_is_empty(const hf_journal *journal);
 
-/* Releases the lock and closes the file; with `remove` it deletes the file, too. */
+/* Releases the lock and closes the file; with `remove` it deletes the file, too. Else it writes the waiting records as
+ * far as this is possible. */
 void hf_journal_close(hf_journal *journal, bool remove);

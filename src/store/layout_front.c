@@ -131,6 +131,13 @@ void hf_layout_get_front(hf_hdf5 *io, hf_summary *s)
     hf_front_free(&front);
 }
 
+/* Reads the front with its designs from the open group. */
+static void read_designs(hf_hdf5 *io, hid_t group, int n_variable, hf_front *front)
+{
+    read_front(io, group, n_variable, front);
+    hf_hdf5_read_list(io, group, "design", HF_KIND_REAL, front->n_point, n_variable, front->design);
+}
+
 hf_status hf_store_restore_front(hf_store *store, int n_variable, hf_front *front, double *wall_s,
                                  hf_messages *messages)
 {
@@ -139,8 +146,7 @@ hf_status hf_store_restore_front(hf_store *store, int n_variable, hf_front *fron
     hf_hdf5 *io = hf_store_enter(store, messages);
     if (!hf_hdf5_has(io, io->file, "/front")) return hf_hdf5_unlock(io->status);
     hid_t group = hf_hdf5_open_group(io, "/front");
-    read_front(io, group, n_variable, front);
-    hf_hdf5_read_list(io, group, "design", HF_KIND_REAL, front->n_point, n_variable, front->design);
+    read_designs(io, group, n_variable, front);
     hf_hdf5_get(io, group, ".", "wall_s", HF_KIND_REAL, wall_s, 0);
     hf_hdf5_close(io, group);
     if (io->status != HF_OK) hf_front_free(front);
@@ -158,8 +164,7 @@ hf_status hf_store_read_front(const char *path, hf_front *front, char **variable
                              "%s: this run has no Pareto front, because the case has no list optimize.front", path);
     hid_t group = hf_hdf5_open_group(&io, "/front");
     int n_variable = hf_hdf5_length(&io, group, "variable", VARIABLES_MAX);
-    read_front(&io, group, n_variable, front);
-    hf_hdf5_read_list(&io, group, "design", HF_KIND_REAL, front->n_point, n_variable, front->design);
+    read_designs(&io, group, n_variable, front);
     if (io.status == HF_OK) *variable = hf_hdf5_read_strings(&io, group, "variable", n_variable, variable_size);
     hf_hdf5_close(&io, group);
     if (hf_store_close_result(&io) != HF_OK) {

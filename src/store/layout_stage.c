@@ -192,6 +192,12 @@ static const hf_layout_field limits[] = {
                 LIMIT("name", name, CHARS, "name of one of them")
                     LIMIT("value", value, REAL, "value of the named one, in the unit of the bound")};
 
+#define OPTIMUM(name, member, kind, units, description)                                                                \
+    HF_LAYOUT_FIELD(hf_optima, name, member, kind, units, description)
+static const hf_layout_field optima[] = {
+    OPTIMUM("merit", merit, REAL, "", "merit of each distinct optimum; psi (m) without objectives")
+        OPTIMUM("count", count, INT, "", "number of refinements that found it")};
+
 /* Returns true if the names are valid and in ascending order. They are printed as they are. */
 static bool are_sets_right(hf_set_tensions *s)
 {
@@ -236,7 +242,7 @@ static bool pass_list(hf_hdf5 *io, bool writes, const char *outer, int stage, co
 
 static void pass_lists(hf_hdf5 *io, bool writes, hf_stage_summary *s, int stage)
 {
-    void *of = s->sets, *held = s->held;
+    void *of = s->sets, *held = s->held, *found = s->optima;
     bool has_sets =
         pass_list(io, writes, "/set_tension", stage, HF_LAYOUT_TABLE(sets), HF_SUMMARY_SETS, &of, sizeof *s->sets);
     s->sets = of;
@@ -246,6 +252,8 @@ static void pass_lists(hf_hdf5 *io, bool writes, hf_stage_summary *s, int stage)
         pass_list(io, writes, "/at_limit", stage, HF_LAYOUT_TABLE(limits), HF_SUMMARY_HELD, &held, sizeof *s->held);
     s->held = held;
     if (has_limits && !are_limits_right(s->held)) hf_hdf5_damaged(io, io->file, "/at_limit", "does not name limits");
+    pass_list(io, writes, "/optima", stage, HF_LAYOUT_TABLE(optima), HF_OPTIMA_MAX, &found, sizeof *s->optima);
+    s->optima = found;
 }
 
 /* ---- objectives ---- */

@@ -70,7 +70,9 @@ static void write_axis(merger *m, hid_t group, int i_axis)
     const int *value = m->study->value + i_axis; /* of the points, n_axis apart */
     const hf_field *f = axis->key.field;
     const hf_list *list = axis->key.list;
-    const char *help = list ? hf_config_help(list->path, f->path) : hf_config_help(f->path, NULL);
+    const char *help = axis->is_replicate ? "number of the run of this combination of the other axes"
+                       : list             ? hf_config_help(list->path, f->path)
+                                          : hf_config_help(f->path, NULL);
     hf_field_type type = f->type == HF_FIELD_AMOUNT && has_numbers(axis) ? HF_FIELD_DOUBLE : f->type;
     const hf_hdf5_kind *kind = type == HF_FIELD_DOUBLE                             ? HF_KIND_REAL
                                : type == HF_FIELD_UINT64                           ? HF_KIND_UINT64

@@ -308,6 +308,7 @@ static void link_data_set(const linking *l, const char *path)
 {
     char then[HF_HDF5_NAME_SIZE], beside[HF_HDF5_NAME_SIZE];
     int i = group_of(below_points(path));
+    if (!strcmp(path, "/search/population/design")) return; /* it had the designs of all generations */
     object_then(path, l->has_rows, then, sizeof then);
     if (i >= 0 && group_table[i].attributes)
         link_to(l->io, path, then);

@@ -28,6 +28,10 @@
  * s. */
 #define PUBLISH_RATIO 50
 #define PUBLISH_S 0.5
+/* Bytes that a search may write beside those of its file, as a part of the file that it will have: the journal, and the
+ * copies that publishing makes. Files smaller than SMALL_BYTES are copied whenever it is time. */
+#define BESIDE_PART 0.9
+#define SMALL_BYTES (1 << 20)
 /* Maximum difference between the tensions of a resumed run and the stored ones, as part of the largest tension. A
  * stopping rule may leave a difference of 1e-6 between two builds. The tests of the store, of resuming and of
  * interrupting pass from 1e-9 to 1e-4; with 1e-2 one fails. */
@@ -312,14 +316,14 @@ hf_status hf_store_variables(hf_store *s, const hf_model *m, const hf_population
 hf_status hf_store_generation(hf_store *s, const hf_model *m, const hf_population *population, hf_messages *messages)
 {
     if (!s) return HF_OK;
-    struct iovec piece[HF_GENERATIONS_PIECES];
+    struct iovec piece[HF_GENERATIONS_PAYLOAD];
     hf_generations *g = &s->rows;
     s->f.io.messages = messages;
     HF_TRY(s->f.io.status);
     HF_TRY(hf_store_variables(s, m, population, messages)); /* a run has written them already */
     int generation = g->n_stored + g->n_waiting;
     hf_generations_add(g, population, piece);
-    s->f.io.status = hf_journal_append(&s->f.journal, generation, piece, HF_GENERATIONS_PIECES, messages);
+    s->f.io.status = hf_journal_append(&s->f.journal, generation, piece, HF_GENERATIONS_PAYLOAD, messages);
     if (s->f.io.status != HF_OK || !hf_generations_are_due(g)) return s->f.io.status;
     /* The journal has the generation already. While another run uses HDF5, making room can wait, unless no room is
      * left. */
@@ -388,6 +392,16 @@ static hf_status demand_restored(hf_store *s, hf_messages *messages)
                s->f.out.path);
 }
 
+/* Returns true if one more copy of the file would make the search write more bytes than BESIDE_PART allows. */
+static bool is_too_much(const hf_store *s)
+{
+    int n = s->rows.n_stored + s->rows.n_waiting;
+    int64_t size = hf_store_file_size(&s->f);
+    if (n == 0 || n >= s->rows.limit || size < SMALL_BYTES) return false;
+    double at_end = (double)size * s->rows.limit / n;
+    return (double)(size + s->f.beside + s->f.journal.size) > BESIDE_PART * at_end;
+}
+
 hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once, hf_messages *messages)
 {
     if (!s) return HF_OK;
@@ -396,7 +410,12 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
     HF_TRY(s->f.io.status);
     if (s->is_continued) return HF_OK; /* the earlier result remains until there is a finished one */
     double since_s = now_s - s->published_at_s;
-    if (!at_once && (since_s < PUBLISH_S || since_s < PUBLISH_RATIO * s->publish_s)) {
+    bool is_due = at_once || (since_s >= PUBLISH_S && since_s >= PUBLISH_RATIO * s->publish_s);
+    if (is_due && !at_once && is_too_much(s)) {
+        s->published_at_s = now_s; /* asked again later */
+        is_due = false;
+    }
+    if (!is_due) {
         s->f.io.status = hf_journal_tend(&s->f.journal, now_s, messages);
         return s->f.io.status;
     }
@@ -407,8 +426,10 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
     hf_hdf5_unlock(HF_OK); /* other stores need not wait for the sync of this file */
     /* Before the first generation no sync is needed, because a resumed run computes everything again. */
     hf_store_file_publish(&s->f, s->rows.n_stored > 0, false);
-    if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal))
+    if (s->f.io.status == HF_OK && !hf_journal_is_empty(&s->f.journal)) {
+        s->f.beside += s->f.journal.size;
         s->f.io.status = hf_journal_rotate(&s->f.journal, messages);
+    }
     s->published_at_s = hf_clock_s();
     s->publish_s = s->published_at_s - now_s;
     return s->f.io.status;

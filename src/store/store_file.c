@@ -89,6 +89,7 @@ static void copy_visible(hf_store_file *f)
         return;
     }
     bool ok = lseek(f->visible, 0, SEEK_SET) == 0 && copy_bytes(f->visible, f->out.file, buffer) == 0;
+    f->beside += hf_store_file_size(f);
     int why = errno;
     free(buffer);
     if (!ok)
@@ -103,14 +104,20 @@ void hf_store_file_open(hf_store_file *f)
     if (f->io.status == HF_OK) hf_hdf5_open_to_write(&f->io, &f->out);
 }
 
+int64_t hf_store_file_size(const hf_store_file *f)
+{
+    struct stat info;
+    return f->out.file >= 0 && fstat(f->out.file, &info) == 0 ? info.st_size : f->ours.st_size;
+}
+
 /* The call is only advice to the system, so its failure does not matter. */
 void hf_store_file_flow(hf_store_file *f)
 {
-    struct stat info;
     if (f->io.file < 0 || f->io.status != HF_OK) return;
-    if (fstat(f->out.file, &info) != 0 || info.st_size - f->flowing < FLOW_BYTES) return;
-    (void)posix_fadvise(f->out.file, f->flowing, info.st_size - f->flowing, POSIX_FADV_DONTNEED);
-    f->flowing = info.st_size;
+    int64_t size = hf_store_file_size(f);
+    if (size - f->flowing < FLOW_BYTES) return;
+    (void)posix_fadvise(f->out.file, f->flowing, size - f->flowing, POSIX_FADV_DONTNEED);
+    f->flowing = size;
 }
 
 void hf_store_file_adopt(hf_store_file *f)

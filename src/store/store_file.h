@@ -47,7 +47,11 @@ typedef struct {
     int visible;                              /* descriptor of that file, for copies even if its name is taken; or -1 */
     hf_file_out out;                          /* out.path is RESULT, out.file the temporary file */
     int64_t flowing; /* bytes of the temporary file that the system was asked to write to the disk */
+    int64_t beside;  /* bytes written so far that are not in the file: copies, and journals that were rotated */
 } hf_store_file;
+
+/* Returns the bytes of the temporary file, or else of the visible file. */
+int64_t hf_store_file_size(const hf_store_file *file);
 
 /* Checks that a file of this name can be made, or that the ordinary file there can be replaced. It is called before the
  * run, not after hours of work. Returns HF_OK, HF_EXISTS or HF_IO. */

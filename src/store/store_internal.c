@@ -4,6 +4,14 @@
 
 #include <stdlib.h>
 
+hf_status hf_store_hold(hf_store *s, double hold_s, hf_messages *messages)
+{
+    if (!s) return HF_OK;
+    s->f.journal.hold_s = hold_s;
+    if (hold_s == 0 && s->f.io.status == HF_OK) s->f.io.status = hf_journal_write(&s->f.journal, messages);
+    return s->f.io.status;
+}
+
 void hf_store_free(hf_store *s, hf_messages *messages)
 {
     hf_store_file_end(&s->f, messages);

@@ -51,6 +51,10 @@ hf_status hf_store_hand_over(hf_store *s, hf_store **store);
 
 void hf_store_free(hf_store *s, hf_messages *messages);
 
+/* Lets generations wait in memory for hold_s, s, so that short ones are written to the journal together. A process that
+ * is killed loses those that wait. hold_s 0 writes them. Returns HF_OK or HF_IO. */
+hf_status hf_store_hold(hf_store *s, double hold_s, hf_messages *messages);
+
 /* Begins a call that uses the file: takes the lock of HDF5 and opens the file. The caller releases the lock. */
 hf_hdf5 *hf_store_enter(hf_store *s, hf_messages *messages);
 

@@ -30,7 +30,7 @@ static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_stat
     const hf_generations *g = &s->rows;
     *status = HF_OK;
     if (generation < next) return false; /* published before the journal was rotated */
-    if (generation == next && bytes == g->payload_bytes && generation < g->limit) return true;
+    if (generation == next && generation < g->limit && hf_generations_are_payload(g, bytes)) return true;
     *status = hf_error(s->f.io.messages, HF_EXISTS,
                        "%s: this result does not match %s. The next record of this journal is generation %d with %zu "
                        "bytes instead of generation %d with %zu bytes. Was the file copied or replaced? Use --restart "
@@ -230,7 +230,7 @@ static hf_status breed_record(void *context, int generation, const void *payload
         goes_on = hf_optimiser_next(o);
     }
     const hf_population *earlier = generation > 0 ? &o->next : NULL;
-    if (!goes_on || !hf_generations_take_payload(g, payload, earlier, &o->population)) {
+    if (!goes_on || !hf_generations_take_payload(g, payload, bytes, earlier, &o->population)) {
         *o = before;
         if (b->drops) return HF_DIFFERENT;
         return hf_error(
@@ -255,8 +255,11 @@ static void breed_journal(hf_store *s, hf_optimiser *optimiser, int drops)
 {
     hf_hdf5 *io = &s->f.io;
     breeding b = {s, optimiser, 0, drops};
+    struct hf_repair *repair = optimiser->repair;
     if (io->status != HF_OK) return;
+    optimiser->repair = NULL; /* the journal has designs that were moved */
     io->status = hf_journal_replay(&s->f.journal, s->identity, breed_record, &b, io->messages);
+    optimiser->repair = repair;
     int first = s->rows.n_stored + s->rows.n_waiting;
     hf_generations_write(io, &s->rows);
     if (io->status == HF_OK && b.n_taken < s->n_journal)

@@ -15,6 +15,7 @@ void hf_summary_free(hf_summary *s)
         free(s->stage[i].pattern);
         free(s->stage[i].sets);
         free(s->stage[i].held);
+        free(s->stage[i].optima);
     }
     free(s->front);
     free(s->load_case);

@@ -118,6 +118,20 @@ static void write_held(const hf_held_limits *h, hf_json *j)
     hf_json_close(j, ']');
 }
 
+/* Writes the member "optima" of a stage: the distinct optima of its refinements, best first. */
+static void write_optima(const hf_optima *o, hf_json *j)
+{
+    if (!o) return;
+    hf_json_open_line(j, "  ", "optima", '[');
+    for (int i = 0; i < o->n; i++) {
+        hf_json_open(j, NULL, '{');
+        hf_json_number(j, "merit", o->merit[i]);
+        hf_json_integer(j, "count", o->count[i]);
+        hf_json_close(j, '}');
+    }
+    hf_json_close(j, ']');
+}
+
 /* Writes the members "merit" and "objectives" of a stage: value and weight of each term of the objective. Objectives
  * of a front have only values. */
 static void write_objectives(const hf_summary *s, const hf_form_result *r, hf_json *j)
@@ -157,6 +171,7 @@ static void write_stage(const hf_summary *s, hf_stage stage, hf_json *j)
     write_pattern(of->pattern, j);
     write_sets(of->sets, j);
     write_held(of->held, j);
+    write_optima(of->optima, j);
     write_objectives(s, &of->result, j);
     hf_json_close(j, '}');
 }

@@ -21,7 +21,7 @@ async function checkNames(tab, made, other) {
   assert.deepEqual(await labels("#map fieldset:first-child label"), shapes);
   assert.deepEqual(await labels("#tensions .chart:first-child .legend > span"), shapes);
   assert.deepEqual(await labels("#compare thead th"), [
-    ...["Quantity", "result.h5: search", "other.h5: refine", "change to other.h5", "Unit"],
+    ...["Quantity", "result.h5: refine", "other.h5: refine", "change to other.h5", "Unit"],
   ]);
   const heads = await labels("h2");
   assert.ok(heads.includes("result.h5: Summary") && heads.includes("Tensions"), heads.join("; "));
@@ -36,10 +36,10 @@ export async function checkOther(tab, page, made) {
   const other = JSON.parse(made.hifdm("show", "other.h5", "--json")),
     row = tab.locator("#compare tr", { hasText: "surface error ψ" }),
     [a, b, change] = (await row.locator("td").allTextContents()).map(number);
-  same(a, 1e3 * made.summary.search.psi_m, 5);
+  same(a, 1e3 * made.summary.refine.psi_m, 5);
   same(b, 1e3 * other.refine.psi_m, 5);
   await checkNames(tab, made, other);
-  assert.equal(change, Number((1e3 * (other.refine.psi_m - made.summary.search.psi_m)).toFixed(4)));
+  assert.equal(change, Number((1e3 * (other.refine.psi_m - made.summary.refine.psi_m)).toFixed(4)));
   const lines = await tab.locator("#compare .differences li").allTextContents();
   assert.deepEqual(lines, ["+ optimize.method=lm", "+ form.pretension_N=10.5"]);
   made.hifdm("export", "other.h5", "--csv", ".", "--force");

@@ -15,6 +15,7 @@ function poison(data) {
       every = () => Array(study.n).fill(HOSTILE);
     Object.assign(study, { path: HOSTILE, id: every(), reason: every(), file: every(), page: every() });
     Object.assign(study, { advice: HOSTILE, ranked_by: HOSTILE, tightest: every(), verdict_text: every() });
+    if (study.replicates) study.replicates.scatter = HOSTILE;
     study.input[0].name = HOSTILE;
     study.input.push({ name: HOSTILE, texts: every().map((text, i) => text + (i % 2)) });
     return data;

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { settle } from "./see.mjs";
 
-const LOADED_MS = 1000,
+const LOADED_MS = 3000, // three times what it takes; the rest is for slower machines
   FRAME_MS = 1000 / 60,
   BUSY_MOST_MS = 0.4 * FRAME_MS, // the rest is for slower machines
   FRAMES = 60,

@@ -333,6 +333,25 @@ export const pages = [
     sections: ["sweep", "points"],
   },
   {
+    name: "sweep-replicates", // the scatter of the search
+    look: true,
+    study: 18,
+    says: {
+      "main > p.advice": /^Pretension 5 N and pretension 5\.5 N (are not shown to )?differ by more than the scatter /,
+      "#sweep .chart >> nth=0": /Each mark is the median of the replicates\. The error bar extends between/,
+      ".figures": /best median/,
+    },
+    text: "base: base.yaml\nsweep:\n  form.pretension_N: [5, 5.5, 20]\n  replicates: 6\n",
+    files: {
+      "base.yaml":
+        "scene:\n  EA_inner_N: 1e5\n  EA_boundary_N: 2e5\n  paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 3, " +
+        "rear_distance_m: 1.8}\nform: {prestress: exact}\ntruss: {ring: {cells_per_bay: 2, held: bay, longeron: " +
+        "{diameter_m: 0.03, wall_m: 0.001}}}\noptimize: {variables: [{set: all, vary: force_density, range: 50 %}], " +
+        "population: 8, generations: 30, elites: 2, refine: false, objective: [{figure: psi}]}\n",
+    },
+    sections: ["sweep", "points"],
+  },
+  {
     name: "sweep-requirements", // two axes: a map of the smallest margin
     look: true,
     study: 12,

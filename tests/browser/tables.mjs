@@ -169,7 +169,7 @@ async function checkCuts(tab, made, heads) {
 
 // A change of ψ has the word of its sign; in copies of the page with another initial design.
 export async function checkChange(browser, made, folder) {
-  const psi_m = made.summary.search.psi_m,
+  const psi_m = made.summary.refine.psi_m,
     given = readFileSync(made.html, "utf8");
   for (const [part, size, word] of [
     [0.5, "100.00", "above"],

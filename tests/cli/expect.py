@@ -7,16 +7,26 @@ import ast
 import base64
 import csv
 import hashlib
+import importlib
 import json
 import sys
 
-import numpy as np
+
+class Lazy:
+    """A module that is imported when it is used. Most files are JSON, and importing numpy takes longer than they do."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def __getattr__(self, attribute):
+        return getattr(importlib.import_module(self.name), attribute)
+
+
+np, h5py = Lazy("numpy"), Lazy("h5py")
 
 
 def load(path):
     if path.endswith(".h5"):
-        import h5py
-
         return h5py.File(path, "r")
     if path.endswith(".csv"):
         with open(path, newline="", encoding="utf-8") as file:
@@ -52,8 +62,6 @@ def refuse(word):
 
 def data_sets(file):
     """Returns {path: data set} of all data sets, without old names and without the links in the grid for ParaView."""
-    import h5py
-
     found = {}
     for name, item in file.items():
         if isinstance(file.get(name, getlink=True), h5py.SoftLink):
@@ -107,6 +115,17 @@ def differing(one, other):
     return sorted(name for name in x.keys() | y.keys() if x.get(name) != y.get(name))
 
 
+def designs(file):
+    """Returns the designs of the search of a result [generation][individual][variable]: those that it stored."""
+    population = file["search/population"]
+    return population["design"][:][population["design_row"][:]]
+
+
+def n_new(design):
+    """Returns how many designs [generation][individual][variable] are not those of the generation before."""
+    return design.shape[1] + (design[1:] != design[:-1]).any(axis=2).sum()
+
+
 def holds_of(thin, whole, store, every):
     """Checks that the rows of /search/population in `thin` are those that optimize.store keeps of the file `whole`, and
     that the last generation is there."""
@@ -114,8 +133,12 @@ def holds_of(thin, whole, store, every):
     rows = {"best": lambda v: v[np.arange(len(v)), best][:, None], "every": lambda v: v[::every]}[store]
     all_of, kept = whole["search/population"], thin["search/population"]
     per = [n for n, d in all_of.items() if hasattr(d, "shape") and d.shape[:2] == all_of["psi_m"].shape]
+    per.remove("design_row")
     figures = [n for n, d in whole["search/population"].items() if hasattr(d, "shape") and d.shape == best.shape]
-    return (len(per) > 10 and len(figures) == 7 and set(thin["search/population/last"]) == set(per) and
+    return (len(per) > 10 and len(figures) == 7 and set(thin["search/population/last"]) == {*per, "design"} and
+            designs(thin).tobytes() == rows(designs(whole)).tobytes() and
+            kept["last/design"][()].tobytes() == designs(whole)[-1:].tobytes() and
+            len(kept["design"]) == n_new(designs(thin)) and
             all(kept[n][()].tobytes() == rows(all_of[n][()]).tobytes() for n in per) and
             all(kept["last"][n][()].tobytes() == all_of[n][-1:].tobytes() for n in per) and
             all(kept[n][()].tobytes() == all_of[n][()].tobytes() for n in figures))

@@ -18,6 +18,7 @@ typedef struct {
 
 static const bits_row rows[] = {
     {"chen2022", NULL, {NULL, NULL}},
+    {"chen2022-dense", NULL, {"optimize.generations=40", NULL}},
     {"chen2022-truss", NULL, {NULL, NULL}},
     {"chen2022-search", "5", {"s/generations: 400/generations: 40/", NULL}},
     {"chen2022-search-truss", "1", {NULL, NULL}},

@@ -40,12 +40,12 @@ START_TEST(csv_holds_the_stored_numbers)
 {
     const char *out = run_once();
     HIFDM(0, "export", out, "--csv", temp("best"));
-    OUT("121 nodes and 220 cables of the search shape in ");
-    demand_values_of(out, temp("best"), file_with("stage", "search"));
+    OUT("121 nodes and 220 cables of the refinement shape in ");
+    demand_values_of(out, temp("best"), file_with("stage", "refine"));
     HIFDM(0, "export", out, "--csv", temp("form"), "--stage", "form");
     OUT("form-finding shape");
     demand_values_of(out, temp("form"), file_with("stage", "form"));
-    HIFDM(0, "export", out, "--csv", temp("opt"), "--stage", "search");
+    HIFDM(0, "export", out, "--csv", temp("opt"), "--stage", "refine");
     SHELL(0, "diff -r \"$1\" \"$2\"", temp("best"), temp("opt"));
     SHELL(1, "cmp -s \"$1\"/nodes.csv \"$2\"/nodes.csv", temp("best"), temp("form"));
     SHELL(0, "ls -A \"$1\" | tr '\\n' ' '", temp("best"));

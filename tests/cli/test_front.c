@@ -143,7 +143,7 @@ static bool says_tolerance(const char *err)
     return says(err, "{\"phase\": \"tolerance\"");
 }
 
-/* A session that is told to stop while the points are judged leaves the front, and the next one only judges it. */
+/* A session that is interrupted while it judges the points keeps the front, and the next one only judges it. */
 START_TEST(a_front_survives_an_interrupt_while_it_is_judged)
 {
 #define MANY FRONT, SHARES, "--set", "tolerance.samples=1500", "--progress", "jsonl", "-o"

@@ -4,7 +4,8 @@
 
 #define BLOCKS "cd \"$1\" && exec \"$2\" tools/docs/blocks.py --program \"$0\" --work \"$3\""
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define PAGES " $(find src/manual -name '*.md' ! -name python.md)" /* Python cannot load a library with sanitizers */
+/* Python cannot load a library with sanitizers. */
+#define PAGES " $(find src/manual -name '*.md' ! -name python.md ! -name own-optimiser.md)"
 #else
 #define PAGES ""
 #endif

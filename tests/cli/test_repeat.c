@@ -12,7 +12,7 @@ START_TEST(data_sets_do_not_depend_on_the_number_of_threads)
     HIFDM(0, "run", CHEN, "-o", seven, "--threads", "7", SHORT);
     EXPECT(one, two, seven, "--", "differing(a, b) == []", "differing(a, c) == []", "a.attrs['threads'] == 1",
            "c.attrs['threads'] == 7", /* and that much was compared */
-           "len(contents(a)) > 30", "a['search/population/design'].shape == (15, 50, 120)");
+           "len(contents(a)) > 30", "designs(a).shape == (15, 50, 120)");
 }
 END_TEST
 

@@ -119,26 +119,27 @@ START_TEST(every_generation_is_there)
         run_once(), "--",
         "a['search/population/psi_m'].shape == a['search/population/status'].shape == "
         "a['search/population/evaluated'].shape == (8, 50)",
-        "a['search/population/design'].shape == (8, 50, 120)",
+        "designs(a).shape == (8, 50, 120)", "a['search/population/design'].dtype == 'f8'",
+        /* each design is stored once, when an individual gets it */
+        "len(a['search/population/design']) == n_new(designs(a))",
+        "(np.unique(a['search/population/design_row'][:]) == np.arange(len(a['search/population/design']))).all()",
         "a['search/population/crossover_rate'].shape == a['search/population/mutation_rate'].shape == (8, 50)",
         "a['search/population/evaluated'][:].sum() == a['search'].attrs['evaluations']",
         "a['search/population/evaluated'][0].all()",
         "not np.isnan(a['search/population/psi_m'][:][a['search/population/status'][:] == 0]).any()",
         "np.isnan(a['search/population/psi_m'][:][a['search/population/status'][:] != 0]).all()",
-        "(a['variable/lower'][:] <= a['search/population/design'][:]).all()",
-        "(a['search/population/design'][:] <= a['variable/upper'][:]).all()",
+        "(a['variable/lower'][:] <= designs(a)).all()", "(designs(a) <= a['variable/upper'][:]).all()",
         /* individual 0 is the found shape's tensions, the best one what its generation says */
-        "(a['search/population/design'][0, 0] == a['form/tension_N'][:][a['variable/cable'][:]]).all()",
+        "(designs(a)[0, 0] == a['form/tension_N'][:][a['variable/cable'][:]]).all()",
         "a['search/population/best_psi_m'][:].tolist() == np.nanmin(a['search/population/psi_m'][:], axis=1).tolist()",
         "a['search/population/best_individual'][:].tolist() == np.nanargmin(a['search/population/psi_m'][:], "
         "axis=1).tolist()",
-        "(a['search/design'][:] == a['search/population/design'][-1, "
-        "a['search/population/best_individual'][-1]]).all()",
+        "(a['search/design'][:] == designs(a)[-1, a['search/population/best_individual'][-1]]).all()",
         "a['search/population/psi_m'][a['search'].attrs['best_generation'], a['search'].attrs['best_individual']] == "
         "a['search'].attrs['psi_m'] == a['search/population/best_psi_m'][-1]",
         /* a child that was not evaluated is its parent: elite or unchanged */
-        "all((a['search/population/design'][g, i] == a['search/population/design'][g - 1, "
-        "a['search/population/parent'][g, i, 0]]).all() for g in range(1, 8) "
+        "all((designs(a)[g, i] == designs(a)[g - 1, a['search/population/parent'][g, i, 0]]).all() for g in range(1, "
+        "8) "
         "for i in np.flatnonzero(a['search/population/evaluated'][g] == 0))");
 }
 END_TEST

@@ -145,6 +145,44 @@ START_TEST(derivatives_come_beside_the_results)
 }
 END_TEST
 
+/* The table of residuals, beside that of derivatives: the gradients of the figures follow from it. A design beyond a
+ * limit has rows, one without a shape has none. */
+START_TEST(residuals_come_beside_the_results)
+{
+    const char *net = net_with(nodes, cables), *table = temp("r.csv"), *slopes = temp("j.csv"), *rows = temp("f.csv");
+    const char *designs =
+        file_with("d.csv", "id,c1,\"c,2\",c.x,c.y,c.z\nat,4,5,0,.1,0\nfar,4,5,0,0,1e300\nlow,2,2,0,0,0\n");
+    HIFDM(0, "evaluate", net, "--designs", designs, "-o", table, "--jacobian", slopes, "--residuals", rows, "--json",
+          "--set", VARIABLES, "--set", OBJECTIVES, "--set",
+          "optimize.limits=[{figure: tension, set: edge, bounds: [7, 30]}]");
+#define ROWS(id, block) "[r for r in c if r['id'] == '" id "' and r['block'] == '" block "']"
+    EXPECT(
+        table, slopes, rows, out_as("r.json"), "--", "[r['status'] for r in a][::2] == ['ok', 'out_of_limits']",
+        "list(c[0]) == ['id', 'block', 'row', 'value', 'c1', 'c,2', 'c.x', 'c.y', 'c.z']",
+        "{r['id'] for r in c} == {'at', 'low'} and a[1]['status'] != 'ok'", "d['residuals'].endswith('f.csv')",
+        "[r['row'] for r in " ROWS(
+            "at", "position_m") "] == [n + x for n in ('a', 'b', 'c', 'm') for x in ('.x', '.y', '.z')]",
+        "[r['row'] for r in " ROWS("low", "tension_N") "][:2] == ['c1', 'c,2']",
+        "near(sum(float(r['value'])**2 for r in c if r['id'] == 'at' and r['block'][:9] == 'objective')**.5, "
+        "float(a[0]['merit']), 1e-9)",
+        "near(sum(float(r['value']) * float(r['c1']) for r in c if r['id'] == 'at' and r['block'][:9] == 'objective'), "
+        "float(a[0]['merit']) * float(next(r for r in b if r['figure'] == 'merit')['c1']), 1e-9)");
+    HIFDM(2, "evaluate", net, "--template", temp("t.csv"), "--residuals", rows);
+    ERR("error: the option --residuals needs --designs FILE\n");
+    HIFDM(2, "evaluate", net, "--designs", designs, "--jacobian", slopes, "--residuals", slopes);
+    ERR("error: the options --residuals and --jacobian must name different files\n");
+    HIFDM(2, "evaluate", net, "--designs", designs, "-o", rows, "--residuals", rows);
+    ERR("error: the options --residuals and -o must name different files\n");
+    HIFDM(5, "evaluate", net, "--designs", designs, "--residuals", rows);
+    ERRS("error: the file %s already exists. Use --force to replace it\n", rows);
+    rows = temp("seeded.csv");
+    HIFDM(2, "evaluate", net, "--designs", file_with("e.csv", "c1,\"c,2\",c3\n10,10,9\n"), "--residuals", rows, "--set",
+          "optimize.rule=seeded");
+    ERR("error: there are no derivatives under optimize.rule seeded\n");
+    ck_assert(!is_there(rows));
+}
+END_TEST
+
 START_TEST(derivatives_are_refused_where_there_are_none)
 {
     const char *net = net_with(nodes, cables), *designs = file_with("d.csv", "c1,\"c,2\",c3\n10,10,9\n");
@@ -411,7 +449,7 @@ START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
     static const char *const what[] = {
         ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222, but the "
         "bound of boundary_ratio_cap is 10",
-        " are above boundary_ratio_cap 10. The initial design has the ratio 22.22. Raise optimize.boundary_ratio_cap, "
+        " are above boundary_ratio_cap 10. The nearest design has the ratio 22.22. Raise optimize.boundary_ratio_cap, "
         "or widen "
         "the ranges and bounds of optimize.variables",
         "",
@@ -495,6 +533,7 @@ Suite *suite_cli_rows(void)
     tcase_add_test(tests, values_of_cables_are_above_zero);
     tcase_add_test(tests, a_cable_called_like_a_variable_of_a_support_is_refused);
     tcase_add_test(tests, derivatives_come_beside_the_results);
+    tcase_add_test(tests, residuals_come_beside_the_results);
     tcase_add_test(tests, derivatives_are_refused_where_there_are_none);
     tcase_add_test(tests, runs_tell_what_became_of_each_objective);
     tcase_add_loop_test(tests, objectives_of_damaged_files_are_not_shown, 0, 3);

@@ -54,6 +54,39 @@ START_TEST(ga_lowers_psi)
 }
 END_TEST
 
+/* Both stages keep their figures. */
+START_TEST(the_best_feasible_design_is_the_result)
+{
+    const char *out = temp("best.h5"), *net = keep(source_path("configs/chen2022.yaml"));
+    HIFDM(0, "run", net, "-o", out, "--json", "--set", "optimize.generations=5");
+    EXPECT(out_as("best.json"), out, "--", "a['refine']['psi_m'] < a['search']['psi_m'] < a['form']['psi_m']",
+           "a['refine']['is_result'] is True", "b['refine'].attrs['is_result'] == 1",
+           "a['search']['psi_m'] == b['search/population/best_psi_m'][-1]");
+    HIFDM(0, "export", out, "--csv", temp("best"));
+    OUT("of the refinement shape");
+    HIFDM(0, "run", net, "-o", out, "--restart", "--json", "--set", "optimize.generations=5", "--set",
+          "optimize.refine=false");
+    EXPECT(out_as("best.json"), "--", "'refine' not in a", "a['search']['psi_m'] < a['form']['psi_m']");
+}
+END_TEST
+
+/* The cap is below the ratio of each individual of the first generation, but not below that of each design. */
+START_TEST(a_refinement_may_find_what_the_search_did_not)
+{
+    const char *out = temp("cap.h5");
+#define CAP                                                                                                            \
+    REFLECTOR, "-o", out, "--json", "--set", "optimize.generations=1", "--set", "optimize.boundary_ratio_cap=1.03"
+    HIFDM(0, "run", CAP);
+    ck_assert(!strstr(said.err, "no feasible design"));
+    EXPECT(out_as("cap.json"), "--", "a['search']['status'] == 'no_feasible'", "a['search']['psi_m'] is None",
+           "a['refine']['is_result'] is True", "a['refine']['boundary_tension_ratio'] <= 1.03 * (1 + 1e-9)",
+           "a['refine']['psi_m'] < a['form']['psi_m']");
+    HIFDM(3, "run", CAP, "--restart", "--set", "optimize.refine=false");
+    ERR("the search found no feasible design, because ");
+    ERR("The nearest design has the ratio 1.");
+}
+END_TEST
+
 START_TEST(straight_edges_are_ill_posed)
 {
     const char *out = temp("c.h5");
@@ -158,10 +191,10 @@ START_TEST(summary_begins_with_the_answer)
     ck_assert_int_le(count_of(said.out, "\n"), 12);
     ck_assert(!strchr(said.out, '\x1b')); /* colours are for terminals */
     const char *text = file_with("said.txt", said.out);
-    EXPECT(text, out, "--", "('psi %.4f mm (' % (b['search'].attrs['psi_m'] * 1e3)).encode() == a[:15]",
+    EXPECT(text, out, "--", "('psi %.4f mm (' % (b['refine'].attrs['psi_m'] * 1e3)).encode() == a[:15]",
            "('; 1 dB gain loss at %.3g GHz for a fixed feed (Ruze, from psi)' % (np.sqrt(np.log(10) / 10) * 299792458 "
            "/ (4 * np.pi * "
-           "b['search'].attrs['psi_m']) / 1e9)).encode() in a.splitlines()[0]",
+           "b['refine'].attrs['psi_m']) / 1e9)).encode() in a.splitlines()[0]",
            "[w.split()[:3] for w in a.decode().splitlines()[4:7]] == [[n, '%.4f' % (o.attrs['psi_m'] * 1e3), "
            "'%.4f' % o.attrs['boundary_tension_ratio']] for n, o in (('form', b['form']), "
            "('search', b['search']), ('refine', b['refine']))]");
@@ -215,6 +248,8 @@ Suite *suite_cli_run(void)
     tcase_add_test(tcase, shows_its_figures);
     tcase_add_test(tcase, json_has_the_keys_of_each_stage);
     tcase_add_test(tcase, ga_lowers_psi);
+    tcase_add_test(tcase, the_best_feasible_design_is_the_result);
+    tcase_add_test(tcase, a_refinement_may_find_what_the_search_did_not);
     tcase_add_test(tcase, straight_edges_are_ill_posed);
     tcase_add_test(tcase, reflector_converges);
     tcase_add_test(tcase, not_converged_is_stored_and_told);

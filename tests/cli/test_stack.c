@@ -32,7 +32,7 @@ static const char *const command[] = {
     "check study.yaml",
     "tolerance full.yaml -o full.h5 --restart",
     "evaluate full.yaml --template designs.csv",
-    "evaluate full.yaml --designs designs.csv -o results.csv --jacobian slopes.csv",
+    "evaluate full.yaml --designs designs.csv -o results.csv --jacobian slopes.csv --residuals rows.csv",
     "show full.h5 --verbose",
     "show full.h5 --json",
     "recover full.h5",

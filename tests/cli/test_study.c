@@ -476,6 +476,61 @@ START_TEST(check_tells_the_faults_of_a_study)
 }
 END_TEST
 
+/* Any threads, shards and interruptions give the same merge, whose groups are recomputed from its points. */
+START_TEST(replicates_show_the_scatter_of_the_search)
+{
+    const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5, 5.5, 20]\n"),
+               *whole = temp("whole.h5"), *shards = temp("shards.h5"), *killed = temp("killed.h5"),
+               *page = temp("s.html");
+    file_with("base.yaml", NET "optimize: {variables: [{set: all, vary: force_density, range: 50 %}], population: 8, "
+                               "generations: 30, elites: 2, refine: false, objective: [{figure: psi}]}\n");
+    HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--threads", "1", "--quiet");
+    path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5, 5.5, 20]\n  replicates: 6\n");
+    HIFDM(0, "check", path);
+    OUT("\n                replicate: 1, 2, 3, 4, 5, 6\n  points        18, each with a seed of its own\n");
+    HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--threads", "1");
+    OUT("15 points run"); /* the first replicates are the points of before */
+    HIFDM(0, "merge", path, "--dir", temp("whole.d"), "-o", whole, "--quiet");
+    for (int task = 2; task >= 0; task--)
+        HIFDM(0, "sweep", path, "--dir", temp("shards.d"), "--threads", keep(formatted("%d", task + 1)), "--task",
+              keep(formatted("%d", task)), "--tasks", "3", "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("shards.d"), "-o", shards, "--quiet");
+    SHELL(0,
+          "\"$0\" sweep \"$1\" --dir \"$2\" --threads 2 --quiet & sleep 0.3; kill -9 $!; wait $!; exec \"$0\" sweep "
+          "\"$1\" --dir \"$2\" --threads 2 --quiet",
+          path, temp("killed.d"));
+    HIFDM(0, "merge", path, "--dir", temp("killed.d"), "-o", killed, "--quiet");
+    EXPECT(whole, shards, killed, "--", "differing(a, b) == []", "differing(a, c) == []",
+           "a['points/input/replicate'][:].tolist() == 3 * [1, 2, 3, 4, 5, 6]",
+           "len(set(a['points/seed'][:].tolist())) == 18");
+    HIFDM(0, "show", whole, "--json");
+    const char *json = out_as("s.json");
+    HIFDM(0, "show", whole);
+    OUT("\n  scatter       pretension 5 N and pretension 5.5 N ");
+    const char *shown = out_as("s.txt");
+    HIFDM(0, "show", whole, "--verbose");
+    OUT("  pretension  replicate  ");
+    HIFDM(0, "report", whole, "-o", page);
+#define PSI "a['points/search/psi_m'][:].reshape(3, 6)"
+#define GROUPS "b['replicates']['groups']"
+    EXPECT(whole, json, shown, data_of(page, "p.json"), "--", "b['replicates']['figure'] == 'psi_m'",
+           "np.allclose([[g[k] for k in ('minimum', 'lower_quartile', 'median', 'upper_quartile', 'maximum')] for g "
+           "in " GROUPS "], np.quantile(" PSI ", (0, .25, .5, .75, 1), axis=1).T, rtol=1e-14, atol=0)",
+           "[g['best'] for g in " GROUPS "] == [texts(a['points/id'])[6 * k + i] for k, i in enumerate(" PSI
+           ".argmin(1))]",
+           "[g['rank'] for g in " GROUPS "] == (np.median(" PSI ", 1).argsort().argsort() + 1).tolist() == [1, 2, 3]",
+           "[g['input'] for g in " GROUPS "] == [{'form.pretension_N': v} for v in (5, 5.5, 20)]",
+           "[g['n'] for g in " GROUPS "] == [6, 6, 6]",
+           "near(b['replicates']['differ_p'], __import__('scipy.stats').stats.mannwhitneyu(" PSI "[0], " PSI
+           "[1], alternative='two-sided', method='exact').pvalue, 1e-12)",
+           "b['replicates']['differ'] == (b['replicates']['differ_p'] < 0.01) == ('differ by more' in "
+           "b['replicates']['scatter'] and 'not' not in b['replicates']['scatter'])",
+           "all('%.4f' % (1e3 * g[k]) in c.decode() for g in " GROUPS " for k in ('minimum', 'median', 'maximum'))",
+           "d['study']['replicates'] == b['replicates']",
+           "max(len(line) for line in c.decode().splitlines() if 'hifdm report' not in line) <= 100");
+}
+END_TEST
+
 START_TEST(show_of_what_is_no_result_says_what_to_do)
 {
     const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5]\n");
@@ -485,6 +540,32 @@ START_TEST(show_of_what_is_no_result_says_what_to_do)
     HIFDM(5, "show", file_with("base.yaml", NET));
     ERR("base.yaml: this file is not a result file (HDF5) but a case. To check this file, use `hifdm check ");
     HIFDM(5, "show", file_with("other.txt", "words\n"));
+}
+END_TEST
+
+/* With seed 2022 and cap 4.7, one step of the refinement leads to nothing better than the search has; with 4.9 it
+ * does. */
+START_TEST(a_search_among_the_results_is_not_called_refinement)
+{
+    const char *base = source_path("configs/chen2022.yaml"),
+               *path = file_with("s.yaml", formatted("base: %s\nsweep:\n  optimize.boundary_ratio_cap: [4.7, 4.9]\n"
+                                                     "  optimize.refine_steps: [1]\n  optimize.generations: [60]\n"
+                                                     "  optimize.seed: [2022]\n",
+                                                     base)),
+               *merged = temp("m.h5"), *page = temp("m.html");
+    HIFDM(0, "sweep", path, "--dir", temp("m.d"), "--quiet");
+    HIFDM(0, "merge", path, "--dir", temp("m.d"), "-o", merged, "--quiet");
+    HIFDM(0, "show", merged);
+    OUT(" psi result");
+    ck_assert(!strstr(said.out, "psi refine"));
+    HIFDM(0, "show", merged, "--json");
+    EXPECT(merged, out_as("m.json"), "--", "a['points/refine/is_result'][:].tolist() == [0, 1]",
+           "b['result'] == 'result'", "[list(p).count('refine') for p in b['points']] == [0, 0]",
+           "[p['result']['psi_m'] for p in b['points']] == [a['points/search/psi_m'][0], a['points/refine/psi_m'][1]]",
+           "[p['search']['psi_m'] for p in b['points']] == a['points/search/psi_m'][:].tolist()",
+           "b['best'] == texts(a['points/id'])[1]");
+    HIFDM(0, "report", merged, "-o", page);
+    EXPECT(page, "--", "b'\"main\":\"result\"' in a.replace(b' ', b'')");
 }
 END_TEST
 
@@ -509,6 +590,8 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, check_counts_threads_that_have_a_point);
     tcase_add_test(tcase, check_tells_what_is_not_done);
     tcase_add_test(tcase, check_tells_the_faults_of_a_study);
+    tcase_add_test(tcase, replicates_show_the_scatter_of_the_search);
+    tcase_add_test(tcase, a_search_among_the_results_is_not_called_refinement);
     tcase_add_test(tcase, show_of_what_is_no_result_says_what_to_do);
     suite_add_tcase(suite, tcase);
     return suite;

@@ -68,7 +68,8 @@ WRITERS = {
     "export": ("export r.h5 --csv out/csv --vtk out/vtk --cutlist out/cut.csv --rf out/rf", {}, 0),
     "export --force": ("export r.h5 --csv out --cutlist out/cut.csv --force", {"nodes.csv": "m.csv"}, 0),
     "adjust": (ADJUST, {}, 0),
-    "evaluate": ("evaluate ga.yaml --designs d.csv -o out/e.csv --jacobian out/j.csv --quiet", {}, 0),
+    "evaluate": ("evaluate ga.yaml --designs d.csv -o out/e.csv --jacobian out/j.csv --residuals out/f.csv --quiet",
+                 {}, 0),
 }
 # What has to be refused is what a fault must not let through.
 OTHERS = {

@@ -99,7 +99,8 @@ SECTIONS = {"title": None, "scene": None, "cables": None, "nodes": None, "truss"
             "tolerance": "`tolerance`", "requirements": "`tolerance`", "load_cases": "load cases", "adjust": "`adjust`",
             "sweep": "`sweep`"}
 FILLER = "filler"  # takes the room of a full disk
-METHODS = {"ga": "search by GA", "lm": "refinement by LM", "ga+lm": "all stages"}
+# The restarts of `auto` write nothing, so it has the stages of ga+lm.
+METHODS = {"ga": "search by GA", "lm": "refinement by LM", "ga+lm": "all stages", "auto": "all stages"}
 
 
 KEPT = re.compile(r"\.h5\.\d+\.h5$")  # a whole result that could not get its name

@@ -65,7 +65,7 @@ static void make_real(int file)
     run r;
     hf_messages messages = {0};
     hf_journal journal = open_journal(file);
-    struct iovec piece[HF_GENERATIONS_PIECES];
+    struct iovec piece[HF_GENERATIONS_PAYLOAD];
     open_run(&r);
     FUZZ_REQUIRE(hf_journal_restart(&journal, "fuzz", &messages) == HF_OK);
     for (int g = 0; g < N_GENERATION; g++) {
@@ -77,8 +77,9 @@ static void make_real(int file)
                                             .merit = fabs(p->design[i * N_VARIABLE] - 10),
                                             .iterations = g};
         hf_optimiser_tell(&r.optimiser);
+        p->is_moved = g % 2 == 1; /* such a record has designs, too */
         hf_generations_add(&r.rows, p, piece);
-        FUZZ_REQUIRE(hf_journal_append(&journal, g, piece, HF_GENERATIONS_PIECES, &messages) == HF_OK);
+        FUZZ_REQUIRE(hf_journal_append(&journal, g, piece, HF_GENERATIONS_PAYLOAD, &messages) == HF_OK);
     }
     close_run(&r);
     real_size = (size_t)journal.size;
@@ -130,13 +131,14 @@ static hf_status take(void *context, int generation, const void *payload, size_t
 {
     run *r = context;
     hf_optimiser *o = &r->optimiser;
-    if (generation != r->n_taken || bytes != r->rows.payload_bytes || generation >= r->rows.limit) return HF_DIFFERENT;
+    if (generation != r->n_taken || !hf_generations_are_payload(&r->rows, bytes) || generation >= r->rows.limit)
+        return HF_DIFFERENT;
     if (generation > 0) {
         hf_optimiser_tell(o);
         if (!hf_optimiser_next(o)) return HF_DIFFERENT;
     }
     const hf_population *before = generation > 0 ? &o->next : NULL;
-    if (!hf_generations_take_payload(&r->rows, payload, before, &o->population)) return HF_DIFFERENT;
+    if (!hf_generations_take_payload(&r->rows, payload, bytes, before, &o->population)) return HF_DIFFERENT;
     o->is_fresh = false;
     hf_generations_add(&r->rows, &o->population, NULL);
     r->n_taken++;

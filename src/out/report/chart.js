@@ -39,6 +39,7 @@ function placeTip(tip, x, y, content) {
 //   isWide: drawn as a band, below the series that follow
 //   isMarked: its line has marks, however many points there are
 //   bars: half the width of a bar around each x, which begins at 0
+//   errors: for each x the ends of an error bar, [low, high], or null
 // marks: { name, at, colour, dash } of vertical lines, or with level instead of at of horizontal ones; the axes include
 //   them
 // colour: a variable of the page's style, or a function that returns red, green and blue
@@ -57,7 +58,7 @@ function chart(options) {
     levels = marks.filter((m) => m.level !== undefined),
     leading = series
       .filter((s) => !s.free)
-      .flatMap((s) => (s.bars === undefined ? shownOf(s) : [0, ...s.values]))
+      .flatMap((s) => (s.bars === undefined ? [...shownOf(s), ...(s.errors || []).flat()] : [0, ...s.values]))
       .concat(levels.map((m) => m.level)),
     positive = range(leading.filter((v) => v > 0));
   const clip = `clip-${++clips}`;
@@ -104,6 +105,17 @@ function chart(options) {
     const line = svg("path", { d: text, ...mark(s), style: `stroke:${paint(s.colour)}` });
     const isBare = s.dots || s.isLevel || (x.length > MARKED_MAX && !s.isMarked);
     return isBare ? line : [line, path({ ...s, dots: true }, sx, sy, yAxis)];
+  }
+
+  // Draws error bars: vertical lines with a short line at each end.
+  function errorBars(s, sx, sy, yAxis) {
+    const d = (s.errors || []).map((ends, i) => {
+      if (!ends || ends[0] === ends[1] || !ends.every((v) => Number.isFinite(v) && yAxis.has(v))) return "";
+      const [low, high] = ends.map((v) => sy(v).toFixed(1)),
+        cap = (y) => `M${(sx(x[i]) - 4).toFixed(1)} ${y}h8`;
+      return `M${sx(x[i]).toFixed(1)} ${low}V${high}${cap(low)}${cap(high)}`;
+    });
+    return s.errors ? [svg("path", { d: d.join(""), class: "curve", style: `stroke:${paint(s.colour)}` })] : [];
   }
 
   // Draws infinite values at the upper edge of the picture, with one sign for each run of neighbours.
@@ -175,7 +187,7 @@ function chart(options) {
       svg(
         "g",
         { "clip-path": `url(#${clip})` },
-        series.flatMap((s) => path(s, sx, sy, yAxis)),
+        series.flatMap((s) => [path(s, sx, sy, yAxis), errorBars(s, sx, sy, yAxis)].flat()),
       ),
       ...upright.map((m) => markLine(m, { x1: sx(m.at), x2: sx(m.at), y1: margin.top, y2: margin.top + h })),
       ...levels.map((m) => markLine(m, { x1: margin.left, x2: margin.left + w, y1: sy(m.level), y2: sy(m.level) })),
@@ -211,7 +223,10 @@ function chart(options) {
       shown.length ? place.sy(shown[0].values[i]) : margin.top,
       tipContent(
         head(i),
-        here.slice(0, LINES_MAX).map((s) => [s.name, `${fmt(s.values[i], 6)} ${unit}`, s.stored]),
+        here.slice(0, LINES_MAX).map((s) => {
+          const ends = s.errors && s.errors[i] ? ` (${s.errors[i].map((v) => fmt(v, 6)).join(" to ")})` : "";
+          return [s.name, `${fmt(s.values[i], 6)} ${unit}${ends}`, s.stored];
+        }),
       ),
     );
   }

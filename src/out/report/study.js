@@ -46,7 +46,12 @@ function readAxes(study) {
 
 // ---- figures of the points ----
 
-const STAGE_STYLE = { form: ["--one", null], search: ["--two", "7 3"], refine: ["--three", "2 3"] };
+const STAGE_STYLE = {
+  form: ["--one", null],
+  search: ["--two", "7 3"],
+  refine: ["--three", "2 3"],
+  result: ["--three", "2 3"], // refined at some points, of the search at others
+};
 const BUILT = "tolerance", // the stage of the as-built net
   REQUIRED = "requirements", // that of the verdicts
   MARGIN = "relative_margin_min";
@@ -210,6 +215,47 @@ function shareOf(study, figure, axis) {
   return whole > 0 ? Math.min(1, between / whole) : 0;
 }
 
+// ---- replicates ----
+
+const REPLICATE = "replicate";
+
+// Returns the value at a position from 0 to 1 among sorted numbers, as the program computes it.
+function quantile(sorted, position) {
+  const at = position * (sorted.length - 1),
+    k = Math.floor(at);
+  return at > k ? (1 - (at - k)) * sorted[k] + (at - k) * sorted[k + 1] : sorted[k];
+}
+
+// Returns figures whose value at a point is the median over the replicates of the point, with their quartiles. A failed
+// replicate is the worst one in the figure that ranks.
+function medians(study, axes, figures) {
+  const others = axes.filter((a) => a.key !== REPLICATE),
+    groups = new Map(),
+    nameOf = (i) => others.map((a) => a.label(i)).join("\n");
+  for (let i = 0; i < study.n; i++) {
+    if (study.status[i] === "not_evaluated") continue;
+    groups.set(nameOf(i), [...(groups.get(nameOf(i)) || []), i]);
+  }
+  const quantileOf = (f, position) => (i, stage) => {
+    const worst = f.isLead ? (f.key === MARGIN ? -Infinity : Infinity) : null,
+      values = (groups.get(nameOf(i)) || []).map((k) => f.of(k, stage) ?? worst).filter((v) => v !== null),
+      value = values.length ? quantile(values.sort((a, b) => a - b), position) : null;
+    return Number.isFinite(value) ? value : null;
+  };
+  return figures.map((f) => ({
+    ...f,
+    of: quantileOf(f, 0.5),
+    quartiles: (i, stage) => {
+      const ends = [0.25, 0.75].map((position) => quantileOf(f, position)(i, stage));
+      return ends.includes(null) ? null : ends;
+    },
+  }));
+}
+
+// Returns the best point or, with replicates, that of the group with the best median.
+const bestOf = ({ replicates, id, best }) =>
+  replicates ? id.indexOf(replicates.groups.find(({ rank }) => rank === 1).best) : best;
+
 // ---- curves and maps ----
 
 const CURVES_MAX = 4; // more curves are drawn as a map of two axes, or as marks
@@ -277,12 +323,13 @@ function curveChart(study, figure, axis, others, groups, stage) {
       name: group.name || (isStaged ? stageWords(of) : unstaged),
       stored: figure.row ? undefined : figure.key,
       values: x.map((v) => (group.at.has(v) ? figure.of(group.at.get(v), of) : null)),
+      errors: figure.quartiles && x.map((v) => (group.at.has(v) ? figure.quartiles(group.at.get(v), of) : null)),
       colour: isOne && isStaged ? styleOf(of)[0] : SERIES[k],
       dash: isOne && isStaged ? styleOf(of)[1] : null,
       dots: x.length < 2,
     })),
   );
-  if (isOne && figure.key === MARGIN)
+  if (isOne && figure.key === MARGIN && !figure.quartiles)
     series.push(
       ...verdictSeries(
         study,
@@ -303,11 +350,19 @@ function curveChart(study, figure, axis, others, groups, stage) {
     marks: [
       ...bounds.filter(({ isFar }) => !isFar),
       ...(isOne && figure.isLead
-        ? [{ name: bestWord(study) + " point", at: axis.value(study.best), colour: "--alarm", dash: "2 3" }]
+        ? [
+            {
+              name: study.replicates ? "best median" : bestWord(study) + " point",
+              at: axis.value(bestOf(study)),
+              colour: "--alarm",
+              dash: "2 3",
+            },
+          ]
         : []),
     ],
     caption: [
       isOne ? "" : `The chart contains one curve for each value of ${listed(others.map((a) => a.name))}.`,
+      figure.quartiles ? "Each mark is the median of the replicates. The error bar extends between the quartiles." : "",
       outsideText(bounds),
     ]
       .filter((text) => text)
@@ -487,7 +542,7 @@ function whatMatters(figure, shares) {
 }
 
 function writeCurves(study, axes, figures, mainStage) {
-  const varying = axes.filter((a) => a.isDrawn),
+  const varying = axes.filter((a) => a.isDrawn && !(study.replicates && a.key === REPLICATE)),
     along = varying.filter((a) => a.isNumber),
     note = el("p", { class: "flat" }),
     charts = el("div", { class: "charts" }),
@@ -501,9 +556,10 @@ function writeCurves(study, axes, figures, mainStage) {
     ...along
       .filter((a) => a.extend)
       .map((a) => {
-        const end = headOf(a, a.label(study.best));
+        const end = headOf(a, a.label(bestOf(study)));
         const change = lead.key === MARGIN ? "increases" : "decreases";
-        return `${lead.title} still ${change} at the end of the axis (${end}). Add points ${a.extend} this value.`;
+        const of = study.replicates ? `The median of ${lowered(lead.title)}` : lead.title;
+        return `${of} still ${change} at the end of the axis (${end}). Add points ${a.extend} this value.`;
       }),
     same.length ? `At all points: ${same.join("; ")}.` : "",
     ...psi.map(
@@ -683,6 +739,12 @@ const isJudged = (study) => study.verdict.some((word) => word !== "none");
 // The first point of the ranking is the best one only if it passes.
 const bestWord = (study) => (isJudged(study) && study.verdict[study.best] !== "pass" ? "closest" : "best");
 
+// Writes whether the two best groups of replicates differ.
+function writeScatter({ replicates }) {
+  const text = replicates && replicates.scatter;
+  return text ? el("p", { class: "advice" }, `${text[0].toUpperCase()}${text.slice(1)}.`) : null;
+}
+
 // Writes which points pass. If the closest point does not pass, none does.
 function writeAdvice(study) {
   if (!study.advice) return null;
@@ -737,17 +799,22 @@ function writeStudy(study) {
         ]
       : failures,
   );
+  const [median] = study.replicates && lead ? medians(study, axes, [lead]) : [],
+    typical = median ? bestOf(study) : -1;
   const best_is = bestWord(study),
     ofLead = isJudged(study) ? `${best_is} point, ` : "minimum ";
   main.append(
-    ...[writeAdvice(study)].filter((node) => node),
+    ...[writeAdvice(study), writeScatter(study)].filter((node) => node),
     el(
       "dl",
       { class: "figures" },
       best < 0 || !lead ? null : figure(ofLead + lowered(lead.title), value(lead.of(best), 4), lead.unit),
+      typical < 0 || !lead ? null : figure("best median", value(median.of(typical), 4), lead.unit),
       best < 0 || !lead
         ? null
-        : varying.filter(matters).map((a) => figure(`${best_is} ${a.name}`, a.label(best), a.unit)),
+        : varying
+            .filter((a) => matters(a) && a.key !== REPLICATE)
+            .map((a) => figure(`${best_is} ${a.name}`, a.label(bestOf(study)), a.unit)),
       isJudged(study)
         ? figure("points pass", `${fmtCount(count((_, i) => study.verdict[i] === "pass"))} of ${fmtCount(study.n)}`)
         : null,
@@ -757,6 +824,7 @@ function writeStudy(study) {
     ),
   );
   const isDrawn = (f) => !f.row || study.required.indexOf(f.row) < REQUIRED_SHOWN;
-  writeCurves(study, axes, figures.filter(isDrawn), mainStage);
+  const drawn = figures.filter(isDrawn);
+  writeCurves(study, axes, study.replicates ? medians(study, axes, drawn) : drawn, mainStage);
   writePoints(study, axes, figures, best);
 }

@@ -80,6 +80,43 @@ START_TEST(product_has_every_combination)
 }
 END_TEST
 
+/* Replicates stand side by side in a product and in a zip. Their seeds differ, also between combinations. The first
+ * one is the point of the study without replicates, so that its result is kept. */
+START_TEST(replicates_have_seeds_of_their_own)
+{
+    hf_study s, single;
+    static const char *const axes[] = {"  form.pretension_N: [8, 10]\n  optimize.range_N: [1, 2]\n",
+                                       "  combine: zip\n  optimize.range_N: [1, 2]\n  form.pretension_N: [8, 10]\n"};
+    for (int is_zip = 0; is_zip < 2; is_zip++) {
+        char text[256];
+        snprintf(text, sizeof text, "  replicates: 3\n%s", axes[is_zip]);
+        open_study(text, &s);
+        open_study(axes[is_zip], &single);
+        ck_assert_int_eq(s.n_point, 3 * single.n_point);
+        for (int i = 0; i < s.n_point; i++) {
+            ck_assert_double_eq(number_at(&s, i, TD), number_at(&single, i / 3, TD));
+            ck_assert_double_eq(number_at(&s, i, RANGE), number_at(&single, i / 3, RANGE));
+            ck_assert_str_eq(value_at(&s, i, "replicate"), "(not set)");
+            for (int k = 0; k < i; k++)
+                ck_assert_str_ne(value_at(&s, i, "optimize.seed"), value_at(&s, k, "optimize.seed"));
+        }
+        for (int i = 0; i < single.n_point; i++) {
+            ck_assert_str_eq(s.id[3 * i], single.id[i]);
+            ck_assert_str_eq(value_at(&s, 3 * i, "optimize.seed"), value_at(&single, i, "optimize.seed"));
+        }
+        ck_assert_str_eq(s.fingerprint, single.fingerprint);
+        hf_study_free(&s);
+        hf_study_free(&single);
+    }
+    open_study("  replicates: 4\n  optimize.range_N: [1]\n", &s); /* more of them: the others keep their ids */
+    open_study("  replicates: 6\n  optimize.range_N: [1]\n", &single);
+    for (int i = 0; i < 4; i++)
+        ck_assert(has_id(&single, s.id[i]));
+    hf_study_free(&s);
+    hf_study_free(&single);
+}
+END_TEST
+
 START_TEST(zip_goes_side_by_side)
 {
     hf_study s;
@@ -475,6 +512,23 @@ static const struct {
     {"  n: 3\n", "study.yaml:3:3: sweep: has no axis"},
     {"  form.pretension_N: {from: 1, to: 2, n: 2000}\n  optimize.seed: {from: 1, to: 2000, n: 2000}\n",
      "4000000 points, but the maximum is 1000000"},
+    {"  replicates: 1\n", "study.yaml:3:15: sweep.replicates: must be a whole number from 2 to 1000, not '1'"},
+    {"  replicates: 1001\n", "study.yaml:3:15: sweep.replicates: must be a whole number from 2 to 1000, not '1001'"},
+    {"  replicates: [3]\n", "study.yaml:3:15: sweep.replicates: must be a whole number from 2 to 1000"},
+    {"  replicate: [1, 2]\n", "study.yaml:3:3: sweep: unknown key 'replicate'; did you mean 'replicates'?"},
+    {"  replicates: 3\n  optimize.seed: [1, 2]\n",
+     "study.yaml:4:18: sweep.optimize.seed: each replicate has a seed of its own. Remove this axis, or the key "
+     "replicates"},
+    {"  optimize.seed: {from: 1, to: 3, n: 3}\n  replicates: 3\n", "study.yaml:3:18: sweep.optimize.seed: each"},
+    {"  form.pretension_N: [1]\n  replicates: 3\n",
+     "study.yaml:4:3: sweep.replicates: all replicates would be identical, because the case has no section optimize. "
+     "Remove the key replicates, or add the section optimize"},
+    {"  optimize.method: [lm]\n  replicates: 3\n",
+     "study.yaml:4:3: sweep.replicates: all replicates would be identical, because the method lm uses no random "
+     "numbers. Remove the key replicates, or use the method ga or ga+lm"},
+    {"  replicates: 3\n  optimize.method: [ga, lm]\n", "study.yaml:3:3: sweep.replicates: all replicates would be"},
+    {"  form.pretension_N: {from: 1, to: 2, n: 2000}\n  replicates: 501\n",
+     "the study has 1002000 points, but the maximum is 1000000"},
     /* ends too far apart for a difference or a quotient, and too large for a whole number */
     {"  form.pretension_N: {from: 1e308, to: -1e308, n: 3}\n",
      "study.yaml:3:29: sweep.form.pretension_N: from must be above 0 and at most 1000000000, not 1e308"},
@@ -596,6 +650,7 @@ Suite *suite_unit_study(void)
     TCase *tests = tcase_create("study");
     suite_add_tcase(suite, tests);
     tcase_add_test(tests, product_has_every_combination);
+    tcase_add_test(tests, replicates_have_seeds_of_their_own);
     tcase_add_test(tests, zip_goes_side_by_side);
     tcase_add_test(tests, ranges_are_linear_or_logarithmic);
     tcase_add_test(tests, the_ends_of_a_range_may_be_far_apart);

@@ -38,6 +38,9 @@ static int work(hf_flat *flat, double *psi_m)
         design[i] = design[i - N_VARIABLE] * 1.01;
     status = hf_flat_evaluate(flat, N_DESIGN, design, figure);
     if (status == HF_OK) status = hf_flat_slopes(flat, N_DESIGN, design, slope);
+    double residual[15], jacobian[15 * N_VARIABLE];
+    if (status == HF_OK) status = hf_flat_residuals(flat, design, 1, residual, jacobian);
+    if (status == HF_OK) status = hf_flat_vjp(flat, design, 1, residual, slope);
     if (status == HF_OK) status = hf_flat_shape(flat, design);
     *psi_m = figure[N_DESIGN + N_DESIGN - 1];
     if (status == HF_OK && figure[0] != HF_OK) status = (int)figure[0];

@@ -139,7 +139,8 @@ START_TEST(every_method_has_its_plan)
         bool ends_with_refine;
     } expected[] = {{"ga", HF_OPTIMIZE_GA, &hf_optimiser_ga, false},
                     {"lm", HF_OPTIMIZE_LM, NULL, true},
-                    {"ga+lm", HF_OPTIMIZE_GA_LM, &hf_optimiser_ga, true}};
+                    {"ga+lm", HF_OPTIMIZE_GA_LM, &hf_optimiser_ga, true},
+                    {"auto", HF_OPTIMIZE_AUTO, &hf_optimiser_ga, true}};
     ck_assert_int_eq(HF_OPTIMIZE_N_METHOD, sizeof expected / sizeof *expected);
     for (int i = 0; i < HF_OPTIMIZE_N_METHOD; i++) {
         hf_optimize_settings s = {.method = expected[i].method};

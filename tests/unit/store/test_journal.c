@@ -39,7 +39,7 @@ static hf_status count(void *context, int generation, const void *payload, size_
     ck_assert_int_eq(generation, *n);
     ck_assert_uint_eq(bytes, 1000);
     for (size_t i = 0; i < bytes; i++)
-        ck_assert_int_eq(((const char *)payload)[i], 'a' + generation);
+        ck_assert_int_eq(((const char *)payload)[i], (char)('a' + generation));
     ++*n;
     return HF_OK;
 }
@@ -194,6 +194,50 @@ START_TEST(samples_that_are_gone_are_told)
 }
 END_TEST
 
+/* Records that wait are written together and in their order: on demand, when there is no room for one more, before one
+ * that never fits, and at the end. */
+START_TEST(records_wait_together)
+{
+    hf_journal j;
+    hf_messages m = {0};
+    static char large[HF_JOURNAL_HELD];
+    int n = 0, fit = HF_JOURNAL_HELD / 1016;
+    open_new(&j, &m);
+    int64_t empty = j.size;
+    append(&j, 0, 'a', &m);
+    ck_assert_int_eq(j.size, empty + 1016); /* none waits yet */
+    j.hold_s = 1e9;
+    for (int g = 1; g < 4; g++)
+        append(&j, g, (char)('a' + g), &m);
+    ck_assert_int_eq(j.size, empty + 1016);
+    ck_assert_int_eq(hf_journal_write(&j, &m), HF_OK);
+    ck_assert_int_eq(j.size, empty + 4 * 1016);
+    for (int g = 4; g < 4 + fit; g++)
+        append(&j, g, (char)('a' + g), &m);
+    ck_assert_int_eq(j.size, empty + 4 * 1016);
+    append(&j, 4 + fit, (char)('a' + 4 + fit), &m);
+    ck_assert_int_eq(j.size, empty + (4 + fit) * 1016);
+    hf_journal_close(&j, false);
+    ck_assert_int_eq(hf_journal_open(result_path(), false, &j, &m), HF_OK);
+    ck_assert_int_eq(hf_journal_replay(&j, "this run", count, &n, &m), HF_OK);
+    ck_assert_int_eq(n, 5 + fit);
+    j.hold_s = 1e9;
+    append(&j, n, (char)('a' + n), &m);
+    int64_t before = j.size;
+    const struct iovec piece = {large, sizeof large};
+    ck_assert_int_eq(hf_journal_append(&j, 7, &piece, 1, &m), HF_OK);
+    ck_assert_int_eq(j.size, before + 1016 + 16 + (int64_t)sizeof large);
+    ck_assert(!hf_journal_is_empty(&j));
+    ck_assert_int_eq(hf_journal_rotate(&j, &m), HF_OK);
+    append(&j, 0, 'a', &m);
+    ck_assert(!hf_journal_is_empty(&j) && j.size == empty);
+    ck_assert_int_eq(hf_journal_rotate(&j, &m), HF_OK);
+    ck_assert(hf_journal_is_empty(&j) && hf_journal_write(&j, &m) == HF_OK && j.size == empty);
+    ck_assert_int_eq(m.n_warning, 0);
+    hf_journal_close(&j, true);
+}
+END_TEST
+
 Suite *suite_unit_journal(void)
 {
     Suite *suite = suite_create("unit/journal");
@@ -204,6 +248,7 @@ Suite *suite_unit_journal(void)
     tcase_add_test(tests, a_name_that_moves_before_the_lock_is_opened_again);
     tcase_add_test(tests, what_is_no_journal_is_replaced_or_told);
     tcase_add_test(tests, what_is_appended_goes_to_the_disk);
+    tcase_add_test(tests, records_wait_together);
     tcase_add_test(tests, samples_that_are_gone_are_told);
     return suite;
 }

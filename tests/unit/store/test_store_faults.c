@@ -308,8 +308,11 @@ START_TEST(a_full_disk_is_told)
     setrlimit(RLIMIT_FSIZE, &limit);
     hf_status status = hf_store_create(path, 0, any_case(), &net.scene, NULL, 0, NULL, &store, &messages);
     if (status == HF_OK) {
-        for (ga.population.generation = 0; ga.population.generation < 40; ga.population.generation++)
+        for (ga.population.generation = 0; ga.population.generation < 40; ga.population.generation++) {
+            for (int i = 0; i < 50 * 40; i++) /* each design is new */
+                ga.population.design[i] += 1;
             hf_store_generation(store, &m, &ga.population, &messages);
+        }
         status = hf_store_finish(store, &(hf_summary){0}, &messages);
     }
     setrlimit(RLIMIT_FSIZE, &before);

@@ -103,37 +103,87 @@ START_TEST(results_of_other_designs_are_left_out)
 }
 END_TEST
 
+/* Designs that were moved into limits are in the payload, because they cannot be proposed again. */
+START_TEST(moved_designs_are_kept)
+{
+    struct run r;
+    hf_generations g = {
+        .n_individual = N_INDIVIDUAL, .n_variable = N_VARIABLE, .limit = N_GENERATION, .every = (int[]){1, 2, 0}[_i]};
+    hf_generations reader = g;
+    struct iovec piece[HF_GENERATIONS_PAYLOAD];
+    char payload[4096];
+    double moved[N_INDIVIDUAL * N_VARIABLE];
+    const size_t one = N_VARIABLE * sizeof(double), places = _i == 0 ? N_INDIVIDUAL * sizeof(int) : 0;
+    open_run(&r);
+    fill(&r.ga);
+    hf_population *p = &r.ga.population;
+    ck_assert(hf_generations_create(&g) == HF_OK && hf_generations_create(&reader) == HF_OK);
+    p->is_moved = true;
+    for (int n = 0; n < 3; n++) { /* all designs are new, then two, then none */
+        size_t used = 0, n_new = (size_t[]){N_INDIVIDUAL, 2, 0}[_i == 0 ? n : 0];
+        for (int i = 0; i < N_INDIVIDUAL * N_VARIABLE && n < 2; i++)
+            if (n == 0 || i / N_VARIABLE == 1 || i == N_INDIVIDUAL * N_VARIABLE - 1) p->design[i] *= 1 + 0.01 * i;
+        memcpy(moved, p->design, sizeof moved);
+        hf_generations_add(&g, p, piece);
+        for (int i = 0; i < HF_GENERATIONS_PAYLOAD; used += piece[i++].iov_len)
+            if (piece[i].iov_len) memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
+        ck_assert_uint_eq(used, g.payload_bytes + places + n_new * one);
+        ck_assert(hf_generations_are_payload(&g, used) && hf_generations_are_payload(&g, g.payload_bytes));
+        ck_assert(!hf_generations_are_payload(&g, used - 8) && !hf_generations_are_payload(&g, used + 8));
+        ck_assert(!hf_generations_are_payload(&g, g.payload_bytes + places + (N_INDIVIDUAL + 1) * one));
+        memset(p->design, 0, sizeof moved);
+        ck_assert(hf_generations_take_payload(&reader, payload, used, NULL, p));
+        ck_assert_mem_eq(p->design, moved, sizeof moved);
+        payload[n_new ? used - 1 : 0] ^= 1; /* the hash notices */
+        ck_assert(!hf_generations_take_payload(&reader, payload, used, NULL, p));
+        payload[n_new ? used - 1 : 0] ^= 1;
+        for (size_t i = 0; i < places; i += sizeof(int)) { /* rows that do not fit the designs are noticed before */
+            for (int shift = 1; shift < 128; shift <<= 2) {
+                payload[sizeof g.design_hash + i] ^= (char)shift;
+                ck_assert(!hf_generations_take_payload(&reader, payload, used, NULL, p));
+                payload[sizeof g.design_hash + i] ^= (char)shift;
+            }
+        }
+        ck_assert(hf_generations_take_payload(&reader, payload, used, NULL, p));
+        hf_generations_add(&reader, p, NULL);
+    }
+    hf_generations_free(&g);
+    hf_generations_free(&reader);
+    close_run(&r);
+}
+END_TEST
+
 /* Every difference in the designs is detected: a last bit, two that cancel in a sum, two individuals exchanged. */
 START_TEST(other_designs_are_told_apart)
 {
     struct run r;
     hf_generations g = {.n_individual = N_INDIVIDUAL, .n_variable = N_VARIABLE, .limit = N_GENERATION, .every = 1};
-    struct iovec piece[HF_GENERATIONS_PIECES];
+    struct iovec piece[HF_GENERATIONS_PAYLOAD];
     char payload[4096];
     size_t used = 0;
     open_run(&r);
     fill(&r.ga);
     ck_assert_int_eq(hf_generations_create(&g), HF_OK);
     hf_generations_add(&g, &r.ga.population, piece);
-    for (int i = 0; i < HF_GENERATIONS_PIECES; used += piece[i++].iov_len)
+    for (int i = 0; i < HF_GENERATIONS_PAYLOAD; used += piece[i++].iov_len)
         memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
     ck_assert_uint_eq(used, g.payload_bytes);
-    ck_assert(hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
+    ck_assert(hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
     double *d = r.ga.population.design, one[N_VARIABLE];
     for (int k = 0; k < N_INDIVIDUAL * N_VARIABLE; k++) {
         int other = (k + 5) % (N_INDIVIDUAL * N_VARIABLE);
         double a = d[k], b = d[other];
         d[k] = nextafter(a, 1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
+        ck_assert(!hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
         d[other] = nextafter(b, -1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
+        ck_assert(!hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
         d[k] = a;
         d[other] = b;
     }
     memcpy(one, d + N_VARIABLE, sizeof one);
     memcpy(d + N_VARIABLE, d + 2 * N_VARIABLE, sizeof one);
     memcpy(d + 2 * N_VARIABLE, one, sizeof one);
-    ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
+    ck_assert(!hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
     hf_generations_free(&g);
     close_run(&r);
 }
@@ -164,8 +214,14 @@ static const struct {
     {"f['search/population'].attrs.modify('generations_limit', -1)", "impossible sizes"},
     {"f['search/population'].attrs.modify('generations_limit', f['search/population'].attrs['generations_limit'] + 1)",
      "other sizes than the case"},
-    {"f['search/population/design'][1, 0, 0] = np.nan", "a last generation that no run stores"},
-    {"f['search/population/design'][1, 0, 0] = 1e9", "a last generation that no run stores"},
+    {"f['search/population/design'][f['search/population/design_row'][1, 0], 0] = np.nan",
+     "a last generation that no run stores"},
+    {"f['search/population/design'][f['search/population/design_row'][1, 0], 0] = 1e9",
+     "a last generation that no run stores"},
+    {"f['search/population/design_row'][1, 0] = -1",
+     "/search/population/design_row points to a design that is not there"},
+    {"f['search/population/design_row'][1, 0] = len(f['search/population/design'])",
+     "/search/population/design_row points to a design that is not there"},
     {"f['search/population/psi_m'][1, 0] = np.inf", "a last generation that no run stores"},
     {"f['search/population/parent'][1, 0, 0] = 10**6", "a last generation that no run stores"},
     {"f['search/population/status'][1, 0] = 99", "/search/population/status holds a value that has no word"},
@@ -245,6 +301,7 @@ Suite *suite_unit_store_resume(void)
     tcase_add_checked_fixture(tests, quiet, NULL);
     tcase_add_test(tests, designs_are_bred_again);
     tcase_add_test(tests, without_memory_nothing_is_restored);
+    tcase_add_loop_test(tests, moved_designs_are_kept, 0, 3);
     tcase_add_test(tests, other_designs_are_told_apart);
     tcase_add_loop_test(tests, a_damaged_file_is_refused, 0, (int)(sizeof spoilt / sizeof spoilt[0]));
     tcase_add_test(tests, results_of_other_designs_are_left_out);

@@ -291,6 +291,27 @@ static double figure_of(unsigned group)
                                          : f.pointing_deg;
 }
 
+/* Compares the gradient of the figure of a group along a way with differences of five points. */
+static void compare_along(unsigned group, const double *gradient, const double *way, double step_m, double agreement)
+{
+    static double start_m[3 * NODES_MOST];
+    double at[5], rate = 0, size = 0;
+    memcpy(start_m, d.position_m, sizeof start_m);
+    for (int i = 0; i < 3 * d.n_node; i++) {
+        rate += gradient[i] * way[i];
+        size += fabs(gradient[i] * way[i]);
+    }
+    for (int side = -2; side <= 2; side++) {
+        for (int i = 0; i < 3 * d.n_node; i++)
+            d.position_m[i] = start_m[i] + side * step_m * way[i];
+        at[side + 2] = figure_of(group);
+    }
+    memcpy(d.position_m, start_m, sizeof start_m);
+    double found = (8 * (at[3] - at[1]) - (at[4] - at[0])) / (12 * step_m);
+    ck_assert_msg(fabs(found - rate) < agreement * size, "group %u: %.12g, not %.12g: %g of %g", group, rate, found,
+                  fabs(found - rate) / size, size);
+}
+
 /* The derivatives along random motions of the nodes are those of differences. A best fit ends at 1e-11 of its sum of
  * squares, which moves the refocused gain by up to 1e-7 dB, most where a shift and a turn nearly cancel. With fits that
  * end at 1e-28, these differences agree to 1e-10, too. */
@@ -298,7 +319,7 @@ START_TEST(derivatives_are_those_of_differences)
 {
     static const unsigned group[] = {HF_ANTENNA_FIXED, HF_ANTENNA_REFOCUSED, HF_ANTENNA_POINTING};
     static const double step_m[] = {1e-4, 5e-4, 1e-4};
-    static double gradient[3 * NODES_MOST], way[3 * NODES_MOST], start_m[3 * NODES_MOST];
+    static double gradient[3 * NODES_MOST], way[3 * NODES_MOST];
     struct rng rng = rng_start(1100 + (uint64_t)_i);
     hf_antenna near;
     bool exists, is_plane_wave = _i >= 8; /* its beam is too wide for a pointing */
@@ -308,7 +329,6 @@ START_TEST(derivatives_are_those_of_differences)
     make(0.3);
     move((const double[]){0.002, -0.003, 0}, (const double[]){0.001, 0.002, -0.003});
     shake(&rng, 1e-4);
-    memcpy(start_m, d.position_m, sizeof start_m);
     ck_assert_int_eq(hf_antenna_near(&d.antenna, &shape, d.scratch, &near), HF_OK);
     d.antenna.start = near.start;
     const double agreement[] = {1e-8, _i % 4 == 2 ? 1e-5 : 1e-4, 1e-8};
@@ -316,21 +336,9 @@ START_TEST(derivatives_are_those_of_differences)
         ck_assert_int_eq(hf_antenna_gradient(&d.antenna, group[k], &shape, d.n_node, gradient, &exists), HF_OK);
         ck_assert(exists);
         for (int trial = 0; trial < 3; trial++) {
-            double at[5], rate = 0, size = 0;
-            for (int i = 0; i < 3 * d.n_node; i++) {
+            for (int i = 0; i < 3 * d.n_node; i++)
                 way[i] = rng_uniform(&rng, -1, 1);
-                rate += gradient[i] * way[i];
-                size += fabs(gradient[i] * way[i]);
-            }
-            for (int side = -2; side <= 2; side++) {
-                for (int i = 0; i < 3 * d.n_node; i++)
-                    d.position_m[i] = start_m[i] + side * step_m[k] * way[i];
-                at[side + 2] = figure_of(group[k]);
-            }
-            double found = (8 * (at[3] - at[1]) - (at[4] - at[0])) / (12 * step_m[k]);
-            ck_assert_msg(fabs(found - rate) < agreement[k] * size, "group %u: %.12g, not %.12g: %g of %g", group[k],
-                          rate, found, fabs(found - rate) / size, size);
-            memcpy(d.position_m, start_m, sizeof start_m);
+            compare_along(group[k], gradient, way, step_m[k], agreement[k]);
         }
     }
     end();
@@ -344,8 +352,7 @@ START_TEST(derivatives_follow_a_fit_of_some_parameters)
         double apex_m[2], slide_m, middle_m, longer;
         int n;
     } of[] = {{{0.1, 0.1}, 0, 0, 0.4, 5}, {{0.7, 0}, 0, 3.5, 1, 4}, {{0, 0}, 0.4, 4, 1, 5}, {{0.7, 0.8}, 0, 0, 1, 4}};
-    static double gradient[3 * NODES_MOST], way[3 * NODES_MOST], start_m[3 * NODES_MOST];
-    const double step_m = 1e-4;
+    static double gradient[3 * NODES_MOST], way[3 * NODES_MOST];
     struct rng rng = rng_start(1150 + (uint64_t)_i);
     hf_antenna near;
     bool exists;
@@ -359,28 +366,15 @@ START_TEST(derivatives_follow_a_fit_of_some_parameters)
         p[0] += of[_i].slide_m;
     }
     shake(&rng, 1e-4);
-    memcpy(start_m, d.position_m, sizeof start_m);
     ck_assert_int_eq(hf_antenna_near(&d.antenna, &shape, d.scratch, &near), HF_OK);
     d.antenna.start = near.start;
     ck_assert_int_eq(near.start.n, of[_i].n);
     ck_assert_int_eq(hf_antenna_gradient(&d.antenna, HF_ANTENNA_REFOCUSED, &shape, d.n_node, gradient, &exists), HF_OK);
     ck_assert(exists);
     for (int trial = 0; trial < 4; trial++) {
-        double at[5], rate = 0, size = 0;
-        for (int i = 0; i < 3 * d.n_node; i++) { /* the last one stretches the net, and thus moves the bounds */
-            way[i] = trial < 3 ? rng_uniform(&rng, -1, 1) : i % 3 < 2 ? start_m[i] / 3 : 0;
-            rate += gradient[i] * way[i];
-            size += fabs(gradient[i] * way[i]);
-        }
-        for (int side = -2; side <= 2; side++) {
-            for (int i = 0; i < 3 * d.n_node; i++)
-                d.position_m[i] = start_m[i] + side * step_m * way[i];
-            at[side + 2] = figure_of(HF_ANTENNA_REFOCUSED);
-        }
-        double found = (8 * (at[3] - at[1]) - (at[4] - at[0])) / (12 * step_m);
-        ck_assert_msg(fabs(found - rate) < 1e-4 * size, "way %d: %.12g, not %.12g: %g of %g", trial, rate, found,
-                      fabs(found - rate) / size, size);
-        memcpy(d.position_m, start_m, sizeof start_m);
+        for (int i = 0; i < 3 * d.n_node; i++) /* the last way stretches the net, and thus moves the bounds */
+            way[i] = trial < 3 ? rng_uniform(&rng, -1, 1) : i % 3 < 2 ? d.position_m[i] / 3 : 0;
+        compare_along(HF_ANTENNA_REFOCUSED, gradient, way, 1e-4, 1e-4);
     }
     end();
 }

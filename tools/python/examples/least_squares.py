@@ -14,14 +14,17 @@ if len(sys.argv) < 2:
 case = hifdm.open(sys.argv[1])
 
 
+def residuals_mm(design):
+    return case.residuals(design) * 1e3
+
+
+def jacobian_mm(design):
+    return case.residual_jacobian(design) * 1e3
+
+
 def psi_mm(design):
-    out = case.evaluate(design[np.newaxis])
-    return out.psi_m * 1e3 if out.feasible[0] else [1e3]  # so large that scipy takes the step back
+    return np.linalg.norm(residuals_mm(design))
 
 
-def slopes(design):
-    return case.jacobian(design[np.newaxis])[0] * 1e3
-
-
-found = least_squares(psi_mm, case.initial, slopes, bounds=(case.lower, case.upper), max_nfev=30)
-print(f"psi {psi_mm(case.initial)[0]:.4f} -> {found.fun[0]:.4f} mm in {found.nfev} evaluations")
+found = least_squares(residuals_mm, case.initial, jacobian_mm, bounds=(case.lower, case.upper))
+print(f"psi {psi_mm(case.initial):.4f} -> {psi_mm(found.x):.4f} mm in {found.nfev} evaluations")

@@ -37,6 +37,8 @@ PROTOTYPES = {
     "evaluate": (c_int, [c_void_p, c_int, _reals, _reals]),
     "shape": (c_int, [c_void_p, _reals]),
     "slopes": (c_int, [c_void_p, c_int, _reals, _reals]),
+    "residuals": (c_int, [c_void_p, _reals, c_int, _reals, _reals]),
+    "vjp": (c_int, [c_void_p, _reals, c_int, _reals, _reals]),
     "run": (c_int, [c_void_p, c_char_p, c_int, Observer, c_void_p]),
     "set_reader": (None, [_texts]),
     "read": (None, [c_char_p]),

@@ -203,6 +203,8 @@ class Case:
         self.variable_leader = self._numbers("variable_leader", dtype=np.int32)
         self.figure_names = self._texts("figure")  # columns of evaluate
         self.slope_names = self._texts("slope")  # figures of jacobian
+        # {name: number of rows} of residuals, in order: psi_m or the objectives, position_m, tension_N
+        self.blocks = dict(zip(self._texts("block"), self._numbers("block_rows", dtype=np.int32).tolist()))
         self.n_node, self.n_cable, self.n_variable = len(self.node_ids), len(self.cable_ids), len(self.variables)
         self.target_position_m = self._numbers("target_position_m", 3)  # [n_node, 3] of supports the real positions
         self.role = self._words("role")  # [n_node] "support", "inner" or "edge"
@@ -352,6 +354,64 @@ class Case:
             self.form()
             self._call(lib.hf_flat_slopes, self._handle, len(designs), pointer(designs), pointer(slopes))
         return slopes
+
+    def _select(self, blocks: str | Sequence[str] | None) -> tuple[int, int, np.ndarray]:
+        """Returns the bits of the selected blocks for the library, the number of their rows, and the indices of these
+        rows in the order of the selection."""
+        known = list(self.blocks)
+        names = known[:-2] if blocks is None else [blocks] if isinstance(blocks, str) else list(blocks)
+        for name in names:
+            if name not in self.blocks:
+                raise ValueError(f"there is no block {name!r}; there are {', '.join(known)}")
+        bits, n, rows = 0, 0, {}
+        for i, name in enumerate(known):
+            if name in names:
+                bits |= 1 << i
+                rows[name] = np.arange(n, n + self.blocks[name])
+                n += self.blocks[name]
+        return bits, n, np.concatenate([np.empty(0, int), *(rows[name] for name in names)])
+
+    def residuals(self, design: np.ndarray, blocks: str | Sequence[str] | None = None) -> np.ndarray:
+        """Returns the residuals [n_row] of one design [n_variable].
+
+        `blocks`: name or names of blocks of residuals, in the order of the rows. The attribute `blocks` lists the names
+        and numbers of rows. The default is all objectives, or psi_m if the case has no objectives. The norm of these
+        residuals is the merit of the design. The block "position_m" has the rows [n_node, 3] of Shape.position_m, and
+        the block "tension_N" has the rows of Shape.tension_N.
+
+        Raises HifdmError if the design has no shape. A design that violates only limits has residuals.
+        """
+        design = wanted("design", design, float, (self.n_variable,))
+        bits, n, rows = self._select(blocks)
+        residual = np.empty(n)
+        with self._lock:
+            self.form()
+            self._call(lib.hf_flat_residuals, self._handle, pointer(design), bits, pointer(residual), None)
+        return residual[rows]
+
+    def residual_jacobian(self, design: np.ndarray, blocks: str | Sequence[str] | None = None) -> np.ndarray:
+        """Returns the exact derivatives [n_row, n_variable] of residuals(design, blocks) with respect to the design
+        variables. Each derivative keeps all other variables constant."""
+        design = wanted("design", design, float, (self.n_variable,))
+        bits, n, rows = self._select(blocks)
+        residual, jacobian = np.empty(n), np.empty((n, self.n_variable))
+        with self._lock:
+            self.form()
+            self._call(lib.hf_flat_residuals, self._handle, pointer(design), bits, pointer(residual), pointer(jacobian))
+        return jacobian[rows]
+
+    def vjp(self, design: np.ndarray, vector: np.ndarray, blocks: str | Sequence[str] | None = None) -> np.ndarray:
+        """Returns the product [n_variable] of a vector [n_row] and the array residual_jacobian(design, blocks), which
+        is not stored."""
+        design = wanted("design", design, float, (self.n_variable,))
+        bits, n, rows = self._select(blocks)
+        vector = wanted("vector", vector, float, (len(rows),))
+        in_order, product = np.zeros(n), np.empty(self.n_variable)
+        np.add.at(in_order, rows, vector)
+        with self._lock:
+            self.form()
+            self._call(lib.hf_flat_vjp, self._handle, pointer(design), bits, pointer(in_order), pointer(product))
+        return product
 
     # ---- a run ----
 
