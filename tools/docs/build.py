@@ -79,7 +79,7 @@ def all_pages(program, make, work):
     method = list(split("src/METHOD.md", "method"))
     ours = written(program, work)
     draw(report_parts(ours, work), work, os.path.dirname(work))
-    paper = [read(f"results/chen2022/{name}.md", f"paper/{name}") for name in ("table", "search")]
+    paper = [read(f"results/chen2022/{name}.md", f"paper/{name}") for name in ("table", "search", "dense")]
     inside = [read("src/ARCHITECTURE.md", "inside")]
     made = [validation.page(make, f"{work}.run"), reference.schema(program), reference.commands(program)]
     made += reference.headers()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Chen et al. 2022, figure by figure: runs the program and writes one SVG per figure of the paper, table.md, and
-search.md, the table of the nets that were tried.
+"""Chen et al. 2022, figure by figure: runs the program and writes one SVG per figure of the paper, table.md, and the
+tables of the nets that were tried: search.md (at equilibrium) and dense.md (at the paper's own stop).
 
     paper.py --program build/hifdm --work build/paper --out results/chen2022
     paper.py --program build/hifdm --work build/paper --check results/chen2022     # compares the tables only
@@ -9,6 +9,7 @@ import argparse
 import os
 import sys
 
+import dense_table
 import figures
 import search_table
 import table
@@ -27,7 +28,8 @@ def main():
 
     runs = Runs(a.program, a.work)
     found = net_runs(runs) | truss_runs(runs)
-    texts = {"table.md": table.write(found, runs.call("schema")), "search.md": search_table.write(runs)}
+    texts = {"table.md": table.write(found, runs.call("schema")), "search.md": search_table.write(runs),
+             "dense.md": dense_table.write(runs)}
     if a.check:
         wrong = []
         for name, text in texts.items():

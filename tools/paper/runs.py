@@ -13,6 +13,8 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 NET = os.path.join(ROOT, "configs", "chen2022.yaml")
 TRUSS = os.path.join(ROOT, "configs", "chen2022-truss.yaml")
 SEARCH, SEARCH_TRUSS = (os.path.join(ROOT, "configs", f"chen2022-search{part}.yaml") for part in ("", "-truss"))
+DENSE = os.path.join(ROOT, "configs", "chen2022-dense.yaml")
+DENSE_CSV, DENSE_TRUSS_CSV = (os.path.join(ROOT, "results", "chen2022", f"dense{part}.csv") for part in ("", "-truss"))
 USUAL_E_PA = 130e9  # CFRP; that of the case is calibrated
 
 
