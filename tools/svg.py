@@ -1,4 +1,5 @@
-"""Writes figures as SVG: log-log panels and stacked shares. It needs only the standard library."""
+"""Writes figures as SVG: log-log panels, shares over a logarithmic axis, and stacked shares. It needs only the standard
+library."""
 import math
 from html import escape
 
@@ -46,6 +47,56 @@ class Axes:
         out.append(text(self.left + self.w / 2, self.top + self.h + 34, x_label))
         out.append(text(self.left - 48, self.top + self.h / 2, y_label, turn=-90))
         return out
+
+
+class ShareAxes:
+    """A panel w x h with shares from 0 to 1 over a logarithmic axis from low to high. Labels of lines have the width
+    `right`."""
+
+    def __init__(self, w, h, low, high, right):
+        self.left, self.top, self.w, self.h = 56, 12, w - 56 - right, h - 12 - 42
+        self.low, self.high = math.log10(low), math.log10(high)
+
+    def at(self, x, share):
+        return (self.left + self.w * (math.log10(x) - self.low) / (self.high - self.low),
+                self.top + self.h * (1 - share))
+
+    def frame(self, x_label, y_label, ticks):
+        right, bottom = self.left + self.w, self.top + self.h
+        out = []
+        for share in (0, 0.25, 0.5, 0.75, 1):
+            y = self.at(10 ** self.low, share)[1]
+            out += [line(self.left, y, right, y), text(self.left - 6, y + 4, f"{100 * share:g} %", 11, "end")]
+        for tick in ticks:
+            x = self.at(tick, 0)[0]
+            out += [line(x, self.top, x, bottom), text(x, bottom + 16, f"{tick:,}".replace(",", " "), 11)]
+        out.append(text(self.left + self.w / 2, bottom + 34, x_label))
+        out.append(text(12, self.top + self.h / 2, y_label, turn=-90))
+        return out
+
+    def curve(self, points):
+        """Returns the path of a step function: the share is that of the last x at or before."""
+        path, before = "", None
+        for x, y in (self.at(*point) for point in points):
+            if before is None:
+                path = f"M{x:.1f} {y:.1f}"
+            elif abs(y - before) >= 0.05:
+                path += f"H{x:.1f}V{y:.1f}"
+            else:
+                continue
+            before = y
+        return path + f"H{self.left + self.w:.1f}"
+
+
+def spread(places, gap, low, high):
+    """Returns the places, in the same order, moved so that they are at least `gap` apart and between low and high."""
+    order = sorted(range(len(places)), key=lambda i: places[i])
+    out = list(places)
+    for n, i in enumerate(order):
+        out[i] = max(out[i], out[order[n - 1]] + gap if n else low)
+    for n, i in reversed(list(enumerate(order))):
+        out[i] = min(out[i], out[order[n + 1]] - gap if n + 1 < len(order) else high)
+    return out
 
 
 def dot(x, y, colour, r=2.8):

@@ -25,8 +25,8 @@ static const char *package_folder(void)
     return folder;
 }
 
-static const char *const script[] = {"bits.py",     "errors.py", "threads.py", "processes.py",
-                                     "examples.py", "manual.py", "renamed.py", "held_lock.py"};
+static const char *const script[] = {"bits.py",   "errors.py",  "threads.py",   "processes.py", "examples.py",
+                                     "manual.py", "renamed.py", "held_lock.py", "residuals.py", "optimiser_times.py"};
 enum { N_SCRIPT = sizeof script / sizeof *script };
 
 START_TEST(script_passes)

@@ -5,17 +5,26 @@
  *
  * Every optimiser sees the same function: psi of a design in the unit cube of its bounds, evaluated by the library as
  * `hifdm run` evaluates its individuals. A design above the cap on the boundary ratio costs 1 km and its violation, one
- * without a shape 1000 km. All begin with the same 50 designs (BOBYQA with the base, the first of them). Each is also tried with one variable per chain of boundary cables, all cables of which then take the same step.
+ * without a shape 1000 km. If the case has a cap, pagmo also gets it as a constraint (cstrs_self_adaptive). All begin
+ * with the same 50 designs (BOBYQA with the base, the first of them). Each is also tried with one variable per chain of
+ * boundary cables, all cables of which then take the same step.
  *
  * Most of them ask for one design at a time, which takes the library as long as eight. So eight runs go on at once,
  * each on a stack of its own: one that asks waits until the others have asked as well.
  *
- * CSV: optimiser, variables (gene or chain), seed, and for each number of evaluations the least psi (m) until then. */
+ * CSV without a head: optimiser, variables (gene or chain), seed, evaluations of the run, and for each design that was
+ * better than all before it two columns: its evaluation, counted from 1, and its cost (m). */
 #include "unit_cube.hpp"
 
 #include <nlopt.hpp>
 #include <pagmo/algorithm.hpp>
+#include <pagmo/algorithms/bee_colony.hpp>
 #include <pagmo/algorithms/cmaes.hpp>
+#include <pagmo/algorithms/cstrs_self_adaptive.hpp>
+#include <pagmo/algorithms/de.hpp>
+#include <pagmo/algorithms/de1220.hpp>
+#include <pagmo/algorithms/gaco.hpp>
+#include <pagmo/algorithms/pso.hpp>
 #include <pagmo/algorithms/pso_gen.hpp>
 #include <pagmo/algorithms/sade.hpp>
 #include <pagmo/algorithms/sga.hpp>
@@ -29,17 +38,17 @@
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <set>
 #include <string>
 #include <ucontext.h>
+#include <utility>
 #include <vector>
 
-namespace {
+namespace
+{
 
 constexpr int population = 50, at_a_time = 8;
+constexpr double DEFAULT_CAP = 10; /* of boundary_ratio_cap */
 constexpr size_t stack_bytes = 8 << 20;
-
-std::vector<long> counts; /* of evaluations, at which the best so far is noted: twenty to a decade and a few more */
 
 double cost_m(const hf_form_result &r)
 {
@@ -48,7 +57,8 @@ double cost_m(const hf_form_result &r)
 
 /* ---- runs ---- */
 
-struct spent {}; /* thrown when the evaluations of a run are used up */
+struct spent {
+}; /* thrown when the evaluations of a run are used up */
 
 struct run {
     std::string name;
@@ -58,7 +68,7 @@ struct run {
     std::function<void(run &)> work;
     long used = 0;
     double best_m = INFINITY;
-    std::vector<double> best_at{};
+    std::vector<std::pair<long, double>> improvements{}; /* evaluation and cost (m) of each new best */
     /* of one that asks for a design at a time */
     std::vector<double> design{}, stack{};
     hf_form_result result{};
@@ -68,18 +78,23 @@ struct run {
     void note(double cost)
     {
         if (used >= limit) throw spent();
-        best_m = std::fmin(best_m, cost);
         used++;
-        if (best_at.size() < counts.size() && used == counts[best_at.size()]) best_at.push_back(best_m);
+        if (!(cost < best_m)) return;
+        best_m = cost;
+        improvements.emplace_back(used, cost);
     }
 
-    double ask(const double *v);
+    const hf_form_result &evaluate(const double *v);
+    double ask(const double *v)
+    {
+        return cost_m(evaluate(v));
+    }
 
     void report() const
     {
-        std::printf("%s,%s,%u", name.c_str(), by_chain ? "chain" : "gene", seed);
-        for (size_t i = 0; i < counts.size(); i++)
-            std::printf(",%.17g", i < best_at.size() ? best_at[i] : best_m); /* it may stop early */
+        std::printf("%s,%s,%u,%ld", name.c_str(), by_chain ? "chain" : "gene", seed, used); /* it may stop early */
+        for (const auto &[at, cost] : improvements)
+            std::printf(",%ld,%.17g", at, cost);
         std::printf("\n");
         std::fflush(stdout);
     }
@@ -88,13 +103,13 @@ struct run {
 ucontext_t scheduler;
 run *now; /* whose stack is in use */
 
-double run::ask(const double *v)
+const hf_form_result &run::evaluate(const double *v)
 {
     design.resize(genes());
     make_design(v, by_chain, design.data());
     swapcontext(&here, &scheduler);
     note(cost_m(result));
-    return cost_m(result);
+    return result;
 }
 
 void enter()
@@ -167,10 +182,15 @@ struct ours { /* with its own memory */
         settings.population = population;
         settings.generations = settings.stagnation_generations = 100000;
         settings.variation = variation;
-        if (hf_optimiser_create(&hf_optimiser_ga, &settings, &problem.model, problem.initial, &o) != HF_OK) std::exit(5);
+        if (hf_optimiser_create(&hf_optimiser_ga, &settings, &problem.model, problem.initial, &o) != HF_OK ||
+            hf_optimiser_repair(&o, &problem.evaluator) != HF_OK)
+            std::exit(5);
     }
     ours(const ours &) = delete;
-    ~ours() { hf_optimiser_free(&o); }
+    ~ours()
+    {
+        hf_optimiser_free(&o);
+    }
 };
 
 void evolve(const char *name, hf_variation variation, unsigned seed, long limit)
@@ -191,19 +211,30 @@ void evolve(const char *name, hf_variation variation, unsigned seed, long limit)
 }
 
 struct function { /* as pagmo wants it */
-    bool by_chain = false;
-    pagmo::vector_double fitness(const pagmo::vector_double &v) const { return {now->ask(v.data())}; }
+    bool by_chain = false, is_constrained = false;
+    pagmo::vector_double fitness(const pagmo::vector_double &v) const
+    {
+        const hf_form_result &r = now->evaluate(v.data());
+        if (!is_constrained) return {cost_m(r)};
+        double outside = r.status == HF_OK ? 0 : hf_status_has_shape(r.status) ? r.violation : 1e6;
+        return {r.status == HF_OK ? r.psi_m : 1, outside}; /* a design above the cap has no psi */
+    }
+    pagmo::vector_double::size_type get_nic() const
+    {
+        return is_constrained;
+    }
     std::pair<pagmo::vector_double, pagmo::vector_double> get_bounds() const
     {
         return {pagmo::vector_double(variables(by_chain), 0), pagmo::vector_double(variables(by_chain), 1)};
     }
 };
 
-void evolve_pagmo(run &r, pagmo::algorithm algorithm)
+void evolve_pagmo(run &r, pagmo::algorithm algorithm, bool is_constrained)
 {
     ours start(r.seed);
     algorithm.set_seed(r.seed);
-    pagmo::population p{pagmo::problem{function{r.by_chain}}, 0, r.seed};
+    if (is_constrained) algorithm = pagmo::algorithm{pagmo::cstrs_self_adaptive(1, algorithm, r.seed)};
+    pagmo::population p{pagmo::problem{function{r.by_chain, is_constrained}}, 0, r.seed};
     for (int i = 0; i < population; i++)
         p.push_back(make_variables(start.o.population.design + (size_t)i * genes(), r.by_chain));
     for (long before = -1; before != r.used;) { /* it may have converged */
@@ -234,7 +265,7 @@ void run_bobyqa(run &r)
 void run_all(unsigned n_seed, long limit)
 {
     std::vector<std::unique_ptr<run>> runs;
-    auto add = [&](const char *name, bool by_chain, unsigned seed, std::function<void(run &)> work) {
+    auto add = [&](const std::string &name, bool by_chain, unsigned seed, std::function<void(run &)> work) {
         runs.emplace_back(new run{name, by_chain, seed, limit, std::move(work)});
     };
     for (unsigned seed = 1; seed <= n_seed; seed++) {
@@ -244,18 +275,30 @@ void run_all(unsigned n_seed, long limit)
     for (bool chain : {false, true}) {
         if (chain && variables(true) == genes()) break;
         add("nlopt BOBYQA", chain, 1, run_bobyqa); /* it has no random numbers */
-        auto add_pagmo = [&](const char *name, std::function<pagmo::algorithm()> make) {
-            for (unsigned seed = 1; seed <= n_seed; seed++)
-                add(name, chain, seed, [make](run &r) { evolve_pagmo(r, make()); });
+        bool has_cap = problem.settings.optimize.boundary_ratio_cap < DEFAULT_CAP;
+        auto add_pagmo = [&](const std::string &name, std::function<pagmo::algorithm()> make) {
+            for (unsigned seed = 1; seed <= n_seed; seed++) {
+                add("pagmo " + name, chain, seed, [make](run &r) { evolve_pagmo(r, make(), false); });
+                if (has_cap && !chain)
+                    add("pagmo cstrs " + name, chain, seed, [make](run &r) { evolve_pagmo(r, make(), true); });
+            }
         };
-        add_pagmo("pagmo sga", [] { return pagmo::algorithm{pagmo::sga(10)}; });
-        add_pagmo("pagmo cmaes",
+        add_pagmo("sga", [] { return pagmo::algorithm{pagmo::sga(10)}; });
+        add_pagmo("cmaes",
                   [] { return pagmo::algorithm{pagmo::cmaes(10, -1, -1, -1, -1, 0.05, 1e-12, 1e-16, true, true)}; });
-        add_pagmo("pagmo xnes",
-                  [] { return pagmo::algorithm{pagmo::xnes(10, -1, -1, -1, 0.05, 1e-12, 1e-16, true, true)}; });
-        add_pagmo("pagmo pso_gen",
+        add_pagmo("xnes", [] { return pagmo::algorithm{pagmo::xnes(10, -1, -1, -1, 0.05, 1e-12, 1e-16, true, true)}; });
+        add_pagmo("pso_gen",
                   [] { return pagmo::algorithm{pagmo::pso_gen(10, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true)}; });
-        add_pagmo("pagmo sade", [] { return pagmo::algorithm{pagmo::sade(10, 2, 1, 1e-16, 1e-16, true)}; });
+        add_pagmo("de", [] { return pagmo::algorithm{pagmo::de(10, 0.8, 0.9, 2, 1e-16, 1e-16)}; });
+        add_pagmo("de1220", [] {
+            return pagmo::algorithm{pagmo::de1220(10, {2, 3, 7, 10, 13, 14, 15, 16}, 1, 1e-16, 1e-16, true)};
+        });
+        add_pagmo("pso", [] { return pagmo::algorithm{pagmo::pso(10, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, true)}; });
+        add_pagmo("gaco", [] {
+            return pagmo::algorithm{pagmo::gaco(10, population, 1.0, 0.0, 0.01, 1, 7, 100000, 100000, 0.0, true)};
+        });
+        add_pagmo("bee_colony", [] { return pagmo::algorithm{pagmo::bee_colony(10, 20)}; });
+        add_pagmo("sade", [] { return pagmo::algorithm{pagmo::sade(10, 2, 1, 1e-16, 1e-16, true)}; });
     }
     work_off(std::move(runs));
 }
@@ -326,17 +369,7 @@ int main(int argc, char **argv)
     if (serves) {
         serve();
     } else {
-        long limit = std::atol(argv[3]);
-        std::set<long> at = {limit};
-        if (limit > 5000) at.insert(5000);
-        for (int k = 20; std::pow(10, 0.05 * k) < (double)limit; k++)
-            at.insert(std::lround(std::pow(10, 0.05 * k)));
-        counts.assign(at.begin(), at.end());
-        std::printf("optimiser,variables,seed");
-        for (long count : counts)
-            std::printf(",%ld", count);
-        std::printf("\n");
-        run_all((unsigned)std::atoi(argv[2]), limit);
+        run_all((unsigned)std::atoi(argv[2]), std::atol(argv[3]));
     }
     hf_problem_free(&problem);
     hf_messages_free(&said);
