@@ -14,6 +14,7 @@ steps() {
 aarch64         120m tools/aarch64.sh
 same-bits       60m  tools/same_bits.sh
 fuzz            20m  make fuzz FUZZ_SECONDS=60
+asan            60m  make asan
 attack          20m  make attack
 stress          60m  make stress
 blas-matrix     150m tools/blas_matrix.sh
