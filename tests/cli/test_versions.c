@@ -117,7 +117,8 @@ START_TEST(new_results_hold_the_names_of_0_2)
     const char *old = result_of("0.2.0", "old.h5"), *now = temp("now.h5");
     HIFDM(0, "run", case_of(old), "-o", now, "--quiet");
     EXPECT(old, now, "--",
-           "all(n.startswith(('tolerance/require_', 'ga/design')) or n.endswith('_yield') for n in missing_names(a, b))",
+           "all(n.startswith(('tolerance/require_', 'ga/design')) or n.endswith('_yield') "
+           "for n in missing_names(a, b))",
            "b.get('ga/best/position_m', getlink=True).path == '/search/position_m'",
            "(b['ga/best/position_m'][:] == b['search/position_m'][:]).all()",
            "b['ga'].attrs['best_psi_m'] == b['search'].attrs['psi_m']",
