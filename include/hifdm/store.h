@@ -203,7 +203,7 @@ hf_status hf_store_restore_refine(hf_store *store, double *wall_s, size_t *n, co
 
 /* Publishes all results so far. The published file has the visible name and is marked as unfinished. If at_once is
  * true, the function publishes immediately. If at_once is false, the function publishes only if enough time has passed
- * since the last publication. The time between two publications is at least 0.5 s and at least 50 times the duration of
+ * since the last publication. The time between two publications is at least 2 s and at least 50 times the duration of
  * the earlier publication. Publishing therefore takes less than 2 % of the run time. A search also does not publish if
  * the copy of the file would make hifdm write more than twice the bytes of the final file. Call hf_store_publish after
  * every generation. */

@@ -18,7 +18,7 @@
 
 /* Time for which generations may wait for the journal, s. The computation of that time is lost if the process is
  * killed. The tests of resuming and of interrupting pass from 0 to 0.5. */
-#define HOLD_S 0.02
+#define HOLD_S 0.05
 
 hf_status hf_stage_begin(hf_run *r, hf_summary *s, hf_messages *messages)
 {

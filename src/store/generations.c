@@ -14,7 +14,7 @@
 /* Bytes of waiting rows without designs. A generation that is larger waits alone. Tested from 1 to 50 MiB. */
 #define WAITING_BYTES (1 << 20)
 /* Chunks of designs that may wait; half of them are written at a time. Tested from 1 to 300. */
-#define DESIGN_CHUNKS 4
+#define DESIGN_CHUNKS 8
 /* Maximum number of rows of a chunk that are no designs, so that a short run has no empty chunks. */
 #define CHUNK_ROWS 256
 /* Bytes of a chunk of a data set, which has as many rows as fit. Tested from 1 to 256 KiB. */
@@ -75,6 +75,24 @@ static bool is_in_last(int i)
     return !is_series(i) && i != HF_ROW_PLACE;
 }
 
+/* Returns true for a figure of an individual that a kept individual has from the generation before. */
+static bool is_result(int i)
+{
+    return i >= HF_ROW_RESULT && i < HF_ROW_TRIAL_STATUS;
+}
+
+/* Returns true for a figure that is known again as soon as an individual is proposed again. */
+static bool is_proposed(int i)
+{
+    return i == HF_ROW_BREEDING || i == HF_ROW_BREEDING + 1;
+}
+
+/* Returns true if individual i has design and results of an individual of the generation before. */
+static bool is_kept(const hf_population *p, int i)
+{
+    return p->parent[2 * i] >= 0 && p->parent[2 * i] < p->n_individual && p->parent[2 * i + 1] == -1;
+}
+
 /* Lists the data sets with their values in a population that hf_optimiser_tell has ranked. The designs are those of the
  * whole population; `design_row` has no values here. */
 static void list_rows(const hf_population *now, generation_row row[HF_GENERATIONS_PIECES])
@@ -131,7 +149,6 @@ static void list_rows(const hf_population *now, generation_row row[HF_GENERATION
                              sizeof *now->result,
                              sizeof(double)};
     }
-    assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m"));
 }
 
 /* Lists names and sizes alone, for n_individual individuals. The pointers to values are not valid. */
@@ -198,6 +215,7 @@ static void lay_out(hf_arena *arena, hf_generations *g)
     g->design_row = hf_arena_take(arena, (size_t)n_in_row(g), sizeof(int));
     g->design = hf_arena_take(arena, (size_t)n_in_row(g), g->row_bytes[HF_ROW_DESIGN]);
     g->hash = hf_arena_take(arena, (size_t)n_in_row(g), sizeof *g->hash);
+    g->fresh = hf_arena_take(arena, (size_t)g->n_individual, g->fresh_bytes);
 }
 
 bool hf_generations_are_of(const hf_generations *g, const hf_population *population)
@@ -217,6 +235,7 @@ static void measure_rows(const hf_generations *g, int n_individual, size_t bytes
 {
     generation_row row[HF_GENERATIONS_PIECES];
     list_empty(g, n_individual, row);
+    assert(!strcmp(row[HF_ROW_STATUS].array.name, "status") && !strcmp(row[HF_ROW_PSI].array.name, "psi_m"));
     for (int i = 0; i < HF_GENERATIONS_PIECES; i++) {
         bytes[i] = hf_hdf5_kind_bytes(row[i].array.kind);
         for (int d = 1; d < row[i].array.rank; d++)
@@ -227,16 +246,16 @@ static void measure_rows(const hf_generations *g, int n_individual, size_t bytes
 hf_status hf_generations_create(hf_generations *g)
 {
     hf_arena arena = {0};
-    size_t waiting = sizeof g->design_hash;
+    size_t waiting = sizeof(double), bytes = 0;
     g->base_psi_m = (double)NAN;
     measure_rows(g, g->n_individual, g->whole_bytes);
     measure_rows(g, n_in_row(g), g->row_bytes);
     g->row_bytes[HF_ROW_DESIGN] = (size_t)g->n_variable * sizeof(double);
-    g->payload_bytes = sizeof g->design_hash;
     for (int i = HF_ROW_PLACE; i < HF_GENERATIONS_PIECES; i++) {
-        g->payload_bytes += i == HF_ROW_PLACE ? 0 : g->whole_bytes[i];
+        bytes += is_result(i) ? g->whole_bytes[i] : 0;
         waiting += g->row_bytes[i];
     }
+    g->fresh_bytes = bytes / (size_t)g->n_individual;
     g->capacity = how_many(WAITING_BYTES / waiting, g->limit);
     int most = g->capacity * n_in_row(g);
     g->design_chunk = how_many(g->n_variable ? CHUNK_BYTES / g->row_bytes[HF_ROW_DESIGN] : 1, most);
@@ -272,21 +291,29 @@ static char *slot(const hf_generations *g, int i)
     return g->row[i] + (size_t)n * g->row_bytes[i];
 }
 
-/* Returns a hash of a design that depends on every bit. Four interleaved chains, similar to FNV-1a, take words of 8
- * bytes. */
+/* Takes a word of 8 bytes into a chain of a hash. For either of both the result is a bijection of the other one. */
+static uint64_t hash_word(uint64_t chain, const void *word)
+{
+    uint64_t bits;
+    memcpy(&bits, word, sizeof bits);
+    chain = (chain ^ bits) * HASH_FACTOR;
+    return chain ^ chain >> 32;
+}
+
+/* Returns a hash of a design that depends on every bit. Eight interleaved chains are similar to FNV-1a. */
 static uint64_t hash_design(const double *design, int n)
 {
-    enum { CHAINS = 4 };
-    uint64_t chain[CHAINS] = {1, 2, 3, 4}, bits, all = 0;
-    for (int i = 0; i < n; i++) {
-        uint64_t *h = &chain[i % CHAINS];
-        memcpy(&bits, &design[i], sizeof bits);
-        *h = (*h ^ bits) * HASH_FACTOR;
-        *h ^= *h >> 32;
-    }
-    for (int i = 0; i < CHAINS; i++)
-        all = (all ^ chain[i]) * HASH_FACTOR, all ^= all >> 32;
-    return all;
+    enum { CHAINS = 8 };
+    uint64_t chain[CHAINS] = {0}, all = 0;
+    int i = 0;
+    for (; i + CHAINS <= n; i += CHAINS)
+        for (int c = 0; c < CHAINS; c++)
+            chain[c] = hash_word(chain[c], &design[i + c]);
+    for (int c = 0; i + c < n; c++)
+        chain[c] = hash_word(chain[c], &design[i + c]);
+    for (int c = 0; c < CHAINS; c++) /* odd factors */
+        all += chain[c] * (HASH_FACTOR + 2 * (uint64_t)c);
+    return all ^ all >> 32;
 }
 
 /* Returns a hash of all designs and of their order. known: hashes of the designs, or NULL. */
@@ -315,15 +342,17 @@ static int next_design_row(const hf_generations *g)
     return g->n_design_stored + g->n_design;
 }
 
-/* Adds the designs of a row of individuals that are not those of the row before, and the row of each. */
-static void add_designs(hf_generations *g, const double *design)
+/* Adds the designs of a row of individuals that are not those of the row before, and the row of each. population: if it
+ * is the generation after that row, else NULL. */
+static void add_designs(hf_generations *g, const double *design, const hf_population *population)
 {
     size_t k = (size_t)g->n_variable, bytes = g->row_bytes[HF_ROW_DESIGN];
     bool is_first = next_design_row(g) == 0;
     for (int i = 0; i < n_in_row(g); i++) {
         const double *now = design + (size_t)i * k;
         double *before = g->design + (size_t)i * k;
-        if (!is_first && !memcmp(before, now, bytes)) continue;
+        bool is_same = population && is_kept(population, i) && population->parent[2 * i] == i;
+        if (!is_first && (is_same || !memcmp(before, now, bytes))) continue;
         memcpy(before, now, bytes);
         memcpy(slot(g, HF_ROW_DESIGN), now, bytes);
         g->design_row[i] = next_design_row(g);
@@ -339,56 +368,93 @@ static void add_part(hf_generations *g, const hf_population *population)
     bool is_best = g->every == HF_GENERATIONS_BEST;
     size_t first = is_best ? (size_t)best_of(population) : 0;
     if (!is_best && (g->n_stored + g->n_waiting) % g->every != 0) return;
-    add_designs(g, population->design + first * (size_t)g->n_variable);
+    add_designs(g, population->design + first * (size_t)g->n_variable, NULL);
     for (int i = HF_ROW_EVALUATED; !is_series(i); i++)
         if (g->row_bytes[i]) memcpy(slot(g, i), g->last[i] + first * g->row_bytes[i], g->row_bytes[i]);
+}
+
+/* Copies the results of the individuals that are not kept from `packed` to g->fresh. Returns their number. */
+static int pack_fresh(hf_generations *g, const hf_population *population, char *const packed[HF_GENERATIONS_PIECES])
+{
+    char *to = g->fresh;
+    int n = 0;
+    for (int i = 0; i < g->n_individual; i++) {
+        if (is_kept(population, i)) continue;
+        for (int k = HF_ROW_RESULT; is_result(k); k++) {
+            size_t each = g->whole_bytes[k] / (size_t)g->n_individual;
+            const char *from = packed[k] + (size_t)i * each;
+            if (each == sizeof(double)) /* without a call */
+                memcpy(to, from, sizeof(double));
+            else
+                memcpy(to, from, each);
+            to += each;
+        }
+        n++;
+    }
+    return n;
+}
+
+/* Returns the bytes of a piece of a payload. */
+static size_t piece_bytes(const hf_generations *g, const hf_generations_head *head, int i)
+{
+    if (i == HF_ROW_DESIGN) return sizeof *head;
+    if (i == HF_ROW_PLACE) return head->n_new >= 0 && !has_last(g) ? g->row_bytes[i] : 0;
+    if (i == HF_ROW_RESULT) return (size_t)head->n_fresh * g->fresh_bytes;
+    if (i == HF_GENERATIONS_PIECES) return head->n_new > 0 ? (size_t)head->n_new * g->row_bytes[HF_ROW_DESIGN] : 0;
+    return is_result(i) || is_proposed(i) ? 0 : g->whole_bytes[i];
 }
 
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece)
 {
     generation_row row[HF_GENERATIONS_PIECES];
-    const struct iovec none = {&g->design_hash, 0}; /* C allows no offset from NULL, not even 0 */
-    struct iovec designs = {population->design, g->whole_bytes[HF_ROW_DESIGN]}, places = none;
+    char *packed[HF_GENERATIONS_PAYLOAD];
+    int n_design = g->n_design;
     list_rows(population, row);
     assert(g->n_waiting < g->capacity && hf_generations_are_of(g, population));
     for (int i = HF_ROW_EVALUATED; i < HF_GENERATIONS_PIECES; i++) {
-        char *to = has_last(g) && !is_series(i) ? g->last[i] : slot(g, i);
-        copy_values(&row[i], g->whole_bytes[i], true, to);
-        if (piece) piece[i] = (struct iovec){to, g->whole_bytes[i]};
+        packed[i] = has_last(g) && !is_series(i) ? g->last[i] : slot(g, i);
+        copy_values(&row[i], g->whole_bytes[i], true, packed[i]);
     }
+    packed[HF_GENERATIONS_PIECES] = has_last(g) ? (char *)population->design : slot(g, HF_ROW_DESIGN);
     if (has_last(g)) {
         memcpy(g->last[HF_ROW_DESIGN], population->design, g->whole_bytes[HF_ROW_DESIGN]);
         add_part(g, population);
     } else {
-        int before = g->n_design;
-        designs.iov_base = slot(g, HF_ROW_DESIGN);
-        add_designs(g, population->design);
-        designs.iov_len = (size_t)(g->n_design - before) * g->row_bytes[HF_ROW_DESIGN];
-        places = (struct iovec){g->design_row, g->row_bytes[HF_ROW_PLACE]};
+        add_designs(g, population->design, population);
     }
     if (piece) {
-        g->design_hash = hash_designs(population, has_last(g) ? NULL : g->hash);
-        piece[HF_ROW_DESIGN] = (struct iovec){&g->design_hash, sizeof g->design_hash};
-        piece[HF_ROW_PLACE] = population->is_moved ? places : none;
-        piece[HF_GENERATIONS_PIECES] = population->is_moved ? designs : none;
+        int n_new = has_last(g) ? g->n_individual : g->n_design - n_design;
+        g->head = (hf_generations_head){.hash = hash_designs(population, has_last(g) ? NULL : g->hash),
+                                        .n_fresh = pack_fresh(g, population, packed),
+                                        .n_new = population->is_moved ? n_new : -1};
+        packed[HF_ROW_DESIGN] = (char *)&g->head;
+        packed[HF_ROW_PLACE] = (char *)g->design_row;
+        packed[HF_ROW_RESULT] = g->fresh;
+        for (int i = 0; i < HF_GENERATIONS_PAYLOAD; i++)
+            piece[i] = (struct iovec){packed[i], piece_bytes(g, &g->head, i)};
     }
     tally(population, 1, g->count);
     if (g->n_stored + g->n_waiting == 0) g->base_psi_m = population->result[0].psi_m;
     g->n_waiting++;
 }
 
-bool hf_generations_are_payload(const hf_generations *g, size_t bytes)
+bool hf_generations_are_payload(const hf_generations *g, const void *payload, size_t bytes)
 {
-    size_t whole = g->payload_bytes + g->whole_bytes[HF_ROW_DESIGN], one = g->row_bytes[HF_ROW_DESIGN];
-    if (bytes == g->payload_bytes || (bytes == whole && has_last(g))) return true;
-    size_t least = g->payload_bytes + g->row_bytes[HF_ROW_PLACE];
-    return !has_last(g) && one && bytes >= least && bytes - least <= whole - g->payload_bytes &&
-           (bytes - least) % one == 0;
+    hf_generations_head head;
+    size_t all = 0;
+    if (bytes < sizeof head) return false;
+    memcpy(&head, payload, sizeof head);
+    if (head.n_fresh < 0 || head.n_fresh > g->n_individual || head.n_new < -1 || head.n_new > g->n_individual)
+        return false;
+    if (has_last(g) && head.n_new >= 0 && head.n_new < g->n_individual) return false;
+    for (int i = 0; i < HF_GENERATIONS_PAYLOAD; i++)
+        all += piece_bytes(g, &head, i);
+    return bytes == all;
 }
 
 /* Copies the n_new designs of a payload, which are those of individuals with a new row of designs. The others have the
  * designs of the generation before. Returns false if these are not n_new individuals. */
-static bool take_designs(const hf_generations *g, const char *places, const char *from, size_t n_new,
+static bool take_designs(const hf_generations *g, const char *places, const char *from, int n_new,
                          hf_population *population)
 {
     size_t bytes = g->row_bytes[HF_ROW_DESIGN];
@@ -405,30 +471,44 @@ static bool take_designs(const hf_generations *g, const char *places, const char
     return n_new == 0;
 }
 
-bool hf_generations_take_payload(const hf_generations *g, const void *payload, size_t bytes,
-                                 const hf_population *before, hf_population *population)
+/* Copies the results of the individuals that are not kept, and takes over the others from the generation before. Returns
+ * false if these are not n_fresh individuals. */
+static bool take_results(const hf_generations *g, const generation_row *row, const char *from, int n_fresh,
+                         const hf_population *before, hf_population *population)
+{
+    for (int i = 0; i < g->n_individual; i++) {
+        bool is_fresh = !is_kept(population, i);
+        if (is_fresh ? n_fresh-- == 0 : !before) return false;
+        if (!is_fresh) hf_population_take_over(before, population->parent[2 * i], population, i);
+        for (int k = HF_ROW_RESULT; is_fresh && is_result(k); k++) {
+            generation_row one = row[k];
+            size_t each = g->whole_bytes[k] / (size_t)g->n_individual;
+            one.from = (const char *)row[k].from + (size_t)i * row[k].stride;
+            copy_values(&one, each, false, (char *)from);
+            from += each;
+        }
+    }
+    return n_fresh == 0;
+}
+
+bool hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_population *before,
+                                 hf_population *population)
 {
     generation_row row[HF_GENERATIONS_PIECES];
-    uint64_t hash;
+    hf_generations_head head;
+    const char *piece[HF_GENERATIONS_PAYLOAD], *from = payload;
     list_rows(population, row);
-    const char *from = payload, *places = NULL;
-    memcpy(&hash, from, sizeof hash);
-    from += sizeof hash;
-    if (bytes > g->payload_bytes && !has_last(g)) {
-        places = from;
-        from += g->row_bytes[HF_ROW_PLACE];
-    }
-    for (int i = HF_ROW_EVALUATED; i < HF_GENERATIONS_PIECES; from += g->whole_bytes[i++])
-        copy_values(&row[i], g->whole_bytes[i], false, (char *)from);
-    for (int i = 0; i < population->n_individual && before; i++) {
-        int kept = population->parent[2 * i];
-        if (kept >= 0 && kept < population->n_individual && population->parent[2 * i + 1] == -1)
-            hf_population_take_over(before, kept, population, i);
-    }
-    size_t left = bytes - (size_t)(from - (const char *)payload);
-    if (places && !take_designs(g, places, from, left / g->row_bytes[HF_ROW_DESIGN], population)) return false;
-    if (!places && left > 0) memcpy(population->design, from, left);
-    return hash == hash_designs(population, NULL);
+    memcpy(&head, payload, sizeof head);
+    for (int i = 0; i < HF_GENERATIONS_PAYLOAD; from += piece_bytes(g, &head, i++))
+        piece[i] = from;
+    for (int i = HF_ROW_EVALUATED; i < HF_GENERATIONS_PIECES; i++)
+        if (!is_result(i)) copy_values(&row[i], piece_bytes(g, &head, i), false, (char *)piece[i]);
+    if (!take_results(g, row, piece[HF_ROW_RESULT], head.n_fresh, before, population)) return false;
+    from = piece[HF_GENERATIONS_PIECES];
+    if (head.n_new >= 0 && has_last(g)) memcpy(population->design, from, g->whole_bytes[HF_ROW_DESIGN]);
+    if (head.n_new >= 0 && !has_last(g) && !take_designs(g, piece[HF_ROW_PLACE], from, head.n_new, population))
+        return false;
+    return head.hash == hash_designs(population, NULL);
 }
 
 /* Returns true if every value of an enumeration has a word. Values of other kinds need none. */

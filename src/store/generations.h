@@ -32,6 +32,13 @@
 /* Number of counts of evaluations in hf_generations.count. */
 enum { HF_GENERATIONS_COUNTS = 3 };
 
+/* Head of the payload of a generation. */
+typedef struct {
+    uint64_t hash;   /* of the designs */
+    int32_t n_fresh; /* number of individuals that are not kept from the generation before */
+    int32_t n_new;   /* number of designs in the payload; -1: it has no designs */
+} hf_generations_head;
+
 typedef struct {
     /* The caller sets the members from here to `every`. */
     bool has_rows; /* as in hf_population */
@@ -50,8 +57,9 @@ typedef struct {
     uint64_t *hash;                            /* [individuals in a row]: their hashes */
     size_t row_bytes[HF_GENERATIONS_PIECES];   /* bytes of one row */
     size_t whole_bytes[HF_GENERATIONS_PIECES]; /* bytes of one generation with all its individuals */
-    size_t payload_bytes;                      /* bytes of the payload of one generation without designs */
-    uint64_t design_hash;                      /* hash of the designs in the last payload */
+    hf_generations_head head;                  /* of the last payload */
+    size_t fresh_bytes;                        /* bytes of the results of one individual in a payload */
+    char *fresh;                               /* [number of individuals][fresh_bytes]: those of the last payload */
     char *row[HF_GENERATIONS_PIECES];          /* [capacity] rows of each data set; of designs [design_capacity] */
     /* The individuals of the last generation that was added, all of them; not used if `every` is 1. */
     char *last[HF_GENERATIONS_PIECES];
@@ -74,19 +82,21 @@ bool hf_generations_are_due(const hf_generations *g);
 
 /* Adds a generation, which hf_optimiser_tell has ranked, to the waiting rows. These must not be full. piece
  * [HF_GENERATIONS_PAYLOAD] (may be NULL) becomes its payload, borrowed until the next generation is added. In place of
- * the designs, nine tenths of the bytes, the payload has their hash: hf_optimiser_next proposes the designs again from
- * the generation before. Only if designs were moved into limits, the payload has the new rows of designs and the row of
- * each individual; without rows of each generation it then has the designs of all individuals. */
+ * the designs, nine tenths of the bytes, the payload has their hash: hf_optimiser_next proposes the designs and their rates again from
+ * the generation before. Results are those of the individuals that are not kept. Only if designs were moved into limits,
+ * the payload has the new rows of designs and the row of each individual; without rows of each generation it then has
+ * the designs of all individuals. */
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece);
 
-/* Returns true if a payload of this size fits the generations. */
-bool hf_generations_are_payload(const hf_generations *g, size_t bytes);
+/* Returns true if the size of a payload is that of its head and of the generations. */
+bool hf_generations_are_payload(const hf_generations *g, const void *payload, size_t bytes);
 
-/* Copies the results and all other values of a payload into `population`, whose designs were proposed again.
- * Individuals that were kept are copied from the generation `before` (NULL: there is none). Returns false if the
- * designs differ in any bit from those of the results. */
-bool hf_generations_take_payload(const hf_generations *g, const void *payload, size_t bytes,
-                                 const hf_population *before, hf_population *population);
+/* Copies the results and all other values of a payload, which hf_generations_are_payload has accepted, into
+ * `population`, whose designs were proposed again. Individuals that were kept are copied from the generation `before`
+ * (NULL: there is none). Returns false if the designs differ in any bit from those of the results, or if the results are
+ * not those of the individuals that are not kept. */
+bool hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_population *before,
+                                 hf_population *population);
 
 /* Returns true if sizes and limit are those of this population. A damaged file may have any sizes. */
 bool hf_generations_are_of(const hf_generations *g, const hf_population *population);

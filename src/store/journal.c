@@ -16,7 +16,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#define MAGIC "hifdm-j2"
+#define MAGIC "hifdm-j3"
 #define RECORD_MAGIC 0x4a444648u /* "HFDJ" as bytes of a little-endian machine */
 #define HEADER_BYTES (8 + HF_JOURNAL_IDENTITY)
 #define PAYLOAD_MAX (1u << 31)

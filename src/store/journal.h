@@ -1,7 +1,7 @@
 /* journal - the file `<result>.journal` with the generations that the result file does not hold yet. A killed process
  * therefore loses none of them, except those that waited for a common write.
  *
- *     8 bytes     "hifdm-j2"
+ *     8 bytes     "hifdm-j3"
  *     64 bytes    identity of the run
  *     records     magic, length and CRC-32 of the rest, generation, payload
  *
@@ -23,7 +23,7 @@
 #define HF_JOURNAL_SYNC_S 5.0 /* s; the tests of the store, of resuming and of interrupting pass with 0.5 to 50 */
 #define HF_JOURNAL_PIECES 32  /* maximum number of pieces of a payload */
 #define HF_JOURNAL_IDENTITY 64
-#define HF_JOURNAL_HELD (64 << 10) /* maximum number of bytes of records that wait */
+#define HF_JOURNAL_HELD (256 << 10) /* maximum number of bytes of records that wait */
 
 typedef struct {
     int file;           /* descriptor; -1: closed */

@@ -161,6 +161,16 @@ void hf_layout_copy(const hf_hdf5_kind *kind, size_t bytes, size_t size, size_t 
             memcpy(packed + (size_t)i * sizeof(double), owner + (size_t)i * stride, sizeof(double));
         return;
     }
+    if (packs && size == sizeof(int) && (!is_alike || bytes == sizeof(int))) { /* the same, too */
+        for (int i = 0, value; i < n; i++) {
+            memcpy(&value, owner + (size_t)i * stride, sizeof value);
+            if (is_alike)
+                memcpy(packed + (size_t)i * sizeof value, &value, sizeof value);
+            else
+                packed[i] = (char)(signed char)value;
+        }
+        return;
+    }
     for (int i = 0; i < n; i++, packed += bytes, owner += stride) {
         if (is_alike)
             memcpy(packs ? packed : owner, packs ? owner : packed, bytes);

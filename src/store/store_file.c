@@ -1,6 +1,7 @@
 /* Implements store_file.h. Sections: names and checks, the temporary file, publishing, the end. */
 #include "store/store_file.h"
 
+#include "base/clock.h"
 #include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/path.h"
@@ -15,7 +16,7 @@
 #define COPY_BYTES (1 << 20) /* bytes copied at a time; the copy does not depend on it */
 /* Bytes written after which the system is asked again to write the file to the disk. This is only advice, and the file
  * does not depend on it. The tests of the store, of results and of interrupting pass with 0 and with 100 MiB. */
-#define FLOW_BYTES (1 << 20)
+#define FLOW_BYTES (8 << 20)
 #define NAMES_MAX 100 /* names that are tried for a result that cannot get its own */
 
 #define EARLIER ".before-restart"
@@ -100,7 +101,9 @@ static void copy_visible(hf_store_file *f)
 void hf_store_file_open(hf_store_file *f)
 {
     if (f->io.file >= 0 || f->io.status != HF_OK) return;
+    double start_s = hf_clock_s();
     copy_visible(f);
+    f->copy_s = hf_clock_s() - start_s;
     if (f->io.status == HF_OK) hf_hdf5_open_to_write(&f->io, &f->out);
 }
 

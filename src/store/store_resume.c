@@ -25,17 +25,17 @@
 /* Returns true if this record is the generation that follows those of the file. Otherwise *status is HF_OK if the file
  * has the generation already, and HF_EXISTS if the record does not fit. The hf_journal_take that calls this returns
  * *status. */
-static bool is_news(hf_store *s, int generation, size_t bytes, int next, hf_status *status)
+static bool is_news(hf_store *s, int generation, const void *payload, size_t bytes, int next, hf_status *status)
 {
     const hf_generations *g = &s->rows;
     *status = HF_OK;
     if (generation < next) return false; /* published before the journal was rotated */
-    if (generation == next && generation < g->limit && hf_generations_are_payload(g, bytes)) return true;
+    if (generation == next && generation < g->limit && hf_generations_are_payload(g, payload, bytes)) return true;
     *status = hf_error(s->f.io.messages, HF_EXISTS,
                        "%s: this result does not match %s. The next record of this journal is generation %d with %zu "
-                       "bytes instead of generation %d with %zu bytes. Was the file copied or replaced? Use --restart "
-                       "(in a sweep: --retry failed) to restart the run",
-                       s->f.out.path, s->f.journal.path, generation, bytes, next, g->payload_bytes);
+                       "bytes, which is not generation %d of this result. Was the file copied or replaced? Use "
+                       "--restart (in a sweep: --retry failed) to restart the run",
+                       s->f.out.path, s->f.journal.path, generation, bytes, next);
     return false;
 }
 
@@ -44,7 +44,7 @@ static hf_status count_record(void *context, int generation, const void *payload
     hf_store *s = context;
     hf_status status;
     (void)payload;
-    s->n_journal += is_news(s, generation, bytes, s->rows.n_stored + s->n_journal, &status);
+    s->n_journal += is_news(s, generation, payload, bytes, s->rows.n_stored + s->n_journal, &status);
     return status;
 }
 
@@ -223,14 +223,14 @@ static hf_status breed_record(void *context, int generation, const void *payload
     hf_optimiser *o = b->optimiser;
     const hf_optimiser before = *o; /* its arrays do not change, see hf_optimiser_kind */
     hf_status status;
-    if (!is_news(s, generation, bytes, g->n_stored + g->n_waiting, &status)) return status;
+    if (!is_news(s, generation, payload, bytes, g->n_stored + g->n_waiting, &status)) return status;
     int goes_on = 1;
     if (generation > 0) {
         hf_optimiser_tell(o);
         goes_on = hf_optimiser_next(o);
     }
     const hf_population *earlier = generation > 0 ? &o->next : NULL;
-    if (!goes_on || !hf_generations_take_payload(g, payload, bytes, earlier, &o->population)) {
+    if (!goes_on || !hf_generations_take_payload(g, payload, earlier, &o->population)) {
         *o = before;
         if (b->drops) return HF_DIFFERENT;
         return hf_error(

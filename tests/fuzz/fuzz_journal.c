@@ -131,14 +131,15 @@ static hf_status take(void *context, int generation, const void *payload, size_t
 {
     run *r = context;
     hf_optimiser *o = &r->optimiser;
-    if (generation != r->n_taken || !hf_generations_are_payload(&r->rows, bytes) || generation >= r->rows.limit)
+    if (generation != r->n_taken || !hf_generations_are_payload(&r->rows, payload, bytes) ||
+        generation >= r->rows.limit)
         return HF_DIFFERENT;
     if (generation > 0) {
         hf_optimiser_tell(o);
         if (!hf_optimiser_next(o)) return HF_DIFFERENT;
     }
     const hf_population *before = generation > 0 ? &o->next : NULL;
-    if (!hf_generations_take_payload(&r->rows, payload, bytes, before, &o->population)) return HF_DIFFERENT;
+    if (!hf_generations_take_payload(&r->rows, payload, before, &o->population)) return HF_DIFFERENT;
     o->is_fresh = false;
     hf_generations_add(&r->rows, &o->population, NULL);
     r->n_taken++;

@@ -103,6 +103,18 @@ START_TEST(results_of_other_designs_are_left_out)
 }
 END_TEST
 
+/* Demands that a payload is refused if its head has these numbers, also with the size that they would give. */
+static void refuse_head(const hf_generations *g, char *payload, size_t used, int n_fresh, int n_new,
+                        size_t design_bytes)
+{
+    const hf_generations_head right = g->head, wrong = {right.hash, n_fresh, n_new};
+    size_t size = used + (size_t)(n_fresh - right.n_fresh) * g->fresh_bytes;
+    size += (size_t)(n_new - right.n_new) * design_bytes;
+    memcpy(payload, &wrong, sizeof wrong);
+    ck_assert(!hf_generations_are_payload(g, payload, used) && !hf_generations_are_payload(g, payload, size));
+    memcpy(payload, &right, sizeof right);
+}
+
 /* Designs that were moved into limits are in the payload, because they cannot be proposed again. */
 START_TEST(moved_designs_are_kept)
 {
@@ -127,28 +139,80 @@ START_TEST(moved_designs_are_kept)
         hf_generations_add(&g, p, piece);
         for (int i = 0; i < HF_GENERATIONS_PAYLOAD; used += piece[i++].iov_len)
             if (piece[i].iov_len) memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
-        ck_assert_uint_eq(used, g.payload_bytes + places + n_new * one);
-        ck_assert(hf_generations_are_payload(&g, used) && hf_generations_are_payload(&g, g.payload_bytes));
-        ck_assert(!hf_generations_are_payload(&g, used - 8) && !hf_generations_are_payload(&g, used + 8));
-        ck_assert(!hf_generations_are_payload(&g, g.payload_bytes + places + (N_INDIVIDUAL + 1) * one));
+        ck_assert_int_eq(g.head.n_new, (int)n_new);
+        ck_assert(hf_generations_are_payload(&g, payload, used));
+        ck_assert(!hf_generations_are_payload(&g, payload, used - 8));
+        ck_assert(!hf_generations_are_payload(&g, payload, used + 8));
+        ck_assert(!hf_generations_are_payload(&g, payload, sizeof g.head - 1));
+        refuse_head(&g, payload, used, N_INDIVIDUAL, N_INDIVIDUAL + 1, one);
+        refuse_head(&g, payload, used, N_INDIVIDUAL, -2, one);
+        refuse_head(&g, payload, used, N_INDIVIDUAL + 1, (int)n_new, one);
+        refuse_head(&g, payload, used, -1, (int)n_new, one);
         memset(p->design, 0, sizeof moved);
-        ck_assert(hf_generations_take_payload(&reader, payload, used, NULL, p));
+        ck_assert(hf_generations_take_payload(&reader, payload, NULL, p));
         ck_assert_mem_eq(p->design, moved, sizeof moved);
         payload[n_new ? used - 1 : 0] ^= 1; /* the hash notices */
-        ck_assert(!hf_generations_take_payload(&reader, payload, used, NULL, p));
+        ck_assert(!hf_generations_take_payload(&reader, payload, NULL, p));
         payload[n_new ? used - 1 : 0] ^= 1;
         for (size_t i = 0; i < places; i += sizeof(int)) { /* rows that do not fit the designs are noticed before */
             for (int shift = 1; shift < 128; shift <<= 2) {
-                payload[sizeof g.design_hash + i] ^= (char)shift;
-                ck_assert(!hf_generations_take_payload(&reader, payload, used, NULL, p));
-                payload[sizeof g.design_hash + i] ^= (char)shift;
+                payload[sizeof g.head + i] ^= (char)shift;
+                ck_assert(!hf_generations_take_payload(&reader, payload, NULL, p));
+                payload[sizeof g.head + i] ^= (char)shift;
             }
         }
-        ck_assert(hf_generations_take_payload(&reader, payload, used, NULL, p));
+        ck_assert(hf_generations_take_payload(&reader, payload, NULL, p));
         hf_generations_add(&reader, p, NULL);
     }
     hf_generations_free(&g);
     hf_generations_free(&reader);
+    close_run(&r);
+}
+END_TEST
+
+/* The payload of a generation has the results of the individuals that are not kept. The others have those of the
+ * generation before. Other numbers of them are noticed. */
+START_TEST(kept_individuals_are_taken_over)
+{
+    struct run r;
+    hf_generations g = {
+        .n_individual = N_INDIVIDUAL, .n_variable = N_VARIABLE, .limit = N_GENERATION, .every = (int[]){1, 2, 0}[_i]};
+    struct iovec piece[HF_GENERATIONS_PAYLOAD];
+    char payload[4096];
+    hf_form_result result[N_INDIVIDUAL];
+    size_t used = 0;
+    open_run(&r);
+    fill(&r.ga);
+    hf_population *p = &r.ga.population, before = *p;
+    ck_assert_int_eq(hf_generations_create(&g), HF_OK);
+    hf_generations_add(&g, p, NULL);
+    memcpy(result, p->result, sizeof result);
+    before.result = result;
+    for (int i = 1; i < N_INDIVIDUAL; i++) { /* all but the first were kept */
+        p->parent[2 * i] = i;
+        p->parent[2 * i + 1] = -1;
+    }
+    p->result[0].psi_m *= 2;
+    hf_generations_add(&g, p, piece);
+    ck_assert_int_eq(g.head.n_fresh, 1);
+    for (int i = 0; i < HF_GENERATIONS_PAYLOAD; used += piece[i++].iov_len)
+        memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
+    memset(p->result, 0, sizeof result);
+    result[0].psi_m *= 2;
+    ck_assert(hf_generations_are_payload(&g, payload, used));
+    ck_assert(hf_generations_take_payload(&g, payload, &before, p));
+    for (int i = 0; i < N_INDIVIDUAL; i++) {
+        ck_assert_int_eq(p->result[i].status, result[i].status);
+        ck_assert_mem_eq(&p->result[i].psi_m, &result[i].psi_m, sizeof(double));
+    }
+    ck_assert(!hf_generations_take_payload(&g, payload, NULL, p)); /* nothing to take over from */
+    for (int n = 0; n < 3; n += 2) {
+        memcpy(payload + offsetof(hf_generations_head, n_fresh), &(int32_t){n}, sizeof(int32_t));
+        ck_assert(!hf_generations_are_payload(&g, payload, used));
+        ck_assert(hf_generations_are_payload(&g, payload, used + (size_t)n * g.fresh_bytes - g.fresh_bytes));
+        ck_assert(!hf_generations_take_payload(&g, payload, &before, p));
+    }
+    hf_generations_free(&g);
     close_run(&r);
 }
 END_TEST
@@ -167,23 +231,23 @@ START_TEST(other_designs_are_told_apart)
     hf_generations_add(&g, &r.ga.population, piece);
     for (int i = 0; i < HF_GENERATIONS_PAYLOAD; used += piece[i++].iov_len)
         memcpy(payload + used, piece[i].iov_base, piece[i].iov_len);
-    ck_assert_uint_eq(used, g.payload_bytes);
-    ck_assert(hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
+    ck_assert(hf_generations_are_payload(&g, payload, used));
+    ck_assert(hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
     double *d = r.ga.population.design, one[N_VARIABLE];
     for (int k = 0; k < N_INDIVIDUAL * N_VARIABLE; k++) {
         int other = (k + 5) % (N_INDIVIDUAL * N_VARIABLE);
         double a = d[k], b = d[other];
         d[k] = nextafter(a, 1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
+        ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
         d[other] = nextafter(b, -1e9);
-        ck_assert(!hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
+        ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
         d[k] = a;
         d[other] = b;
     }
     memcpy(one, d + N_VARIABLE, sizeof one);
     memcpy(d + N_VARIABLE, d + 2 * N_VARIABLE, sizeof one);
     memcpy(d + 2 * N_VARIABLE, one, sizeof one);
-    ck_assert(!hf_generations_take_payload(&g, payload, used, NULL, &r.ga.population));
+    ck_assert(!hf_generations_take_payload(&g, payload, NULL, &r.ga.population));
     hf_generations_free(&g);
     close_run(&r);
 }
@@ -233,7 +297,7 @@ static const struct {
      "/search/population/psi_m is a link to another place"},
     {"f['search/more'] = h5py.ExternalLink('/etc/passwd', '/')", "/search/more is a link to another place"},
     {"f['all'] = f['/']", "one object too many, or too deep"},
-    {RECORD("data[88 + 8] = 77"),
+    {RECORD("data[88 + 16] = 77"),
      "no run stores a record like its generation 2"}, /* `evaluated` of the first individual */
     {RECORD("data[84:84 + n] = struct.pack('<i', 2) + bytes(20); n = 24; struct.pack_into('<I', data, 76, n)"),
      "does not match"},
@@ -303,6 +367,7 @@ Suite *suite_unit_store_resume(void)
     tcase_add_test(tests, without_memory_nothing_is_restored);
     tcase_add_loop_test(tests, moved_designs_are_kept, 0, 3);
     tcase_add_test(tests, other_designs_are_told_apart);
+    tcase_add_loop_test(tests, kept_individuals_are_taken_over, 0, 3);
     tcase_add_loop_test(tests, a_damaged_file_is_refused, 0, (int)(sizeof spoilt / sizeof spoilt[0]));
     tcase_add_test(tests, results_of_other_designs_are_left_out);
     return suite;
