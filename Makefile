@@ -112,6 +112,7 @@ PYTHON_FILES := $(wildcard tools/python/hifdm/*.py) tools/python/hifdm/py.typed
 BENCH := $(BUILD)/bench/bench
 PEERS := $(BUILD)/optimisers/peers
 FRONTS := $(BUILD)/optimisers/fronts
+BUDGET := $(BUILD)/optimisers/budget
 BENCH_OUT ?= results/bench
 BENCH_ROUNDS ?= 3
 BENCH_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/bench/*.c)))
@@ -140,7 +141,7 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         bench-before bench-optimisers bench-fronts bench-sampling pretension-night api docs docs-browser lint \
+         bench-before bench-optimisers bench-auto bench-fronts bench-sampling pretension-night api docs docs-browser lint \
          asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
 FRONT += prose python-install mutants-random attack abi bench-instructions bits transcripts deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
@@ -289,6 +290,12 @@ bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: res
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/optimisers/run.py --driver $(PEERS) --program $(PROGRAM) --seeds $(OPTIMISER_SEEDS) \
 	    --only $(call quote,$(OPTIMISER_ONLY)) --out $(BENCH_OUT)
+
+bench-auto: ## `method: auto` from 20 seeds beside nlopt and pagmo: results/bench/auto.csv, best.csv (10 minutes)
+	$(Q)tools/setup.sh --optimisers
+	$(SUB) $(PROGRAM) $(BUDGET)
+	@mkdir -p $(BENCH_OUT)
+	$(PYTHON) tools/optimisers/auto.py --driver $(BUDGET) --program $(PROGRAM) --out $(BENCH_OUT)
 
 bench-fronts: ## fronts of two and three objectives beside pagmo's NSGA-II: results/bench/fronts.csv (2 minutes)
 	$(Q)tools/setup.sh --optimisers
@@ -532,7 +539,7 @@ $(PROGRAM): $(APP_OBJ) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) -o $@ $^ $(PKG_LIBS)
 
-$(PEERS) $(FRONTS): $(BUILD)/optimisers/%: tools/optimisers/%.cpp tools/optimisers/unit_cube.hpp $(STATIC) Makefile
+$(PEERS) $(FRONTS) $(BUDGET): $(BUILD)/optimisers/%: tools/optimisers/%.cpp tools/optimisers/unit_cube.hpp $(STATIC) Makefile
 	$(call say,LD,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CXX) -O2 -std=c++17 -Wall -Iinclude $$(pkg-config --cflags eigen3) $(LDFLAGS) -o $@ $< $(STATIC) -fopenmp \
