@@ -141,8 +141,8 @@ stamp = @mkdir -p $(@D); printf '%s\n' $(call quote,$(1)) | cmp -s - $@ || print
 
 # ---- Targets to type -------------------------------------------------------------------------------------------------
 FRONT := all compile-all run test stress test-under-load mutants browser paper paper-check paper-search literal bench \
-         bench-before bench-optimisers bench-auto bench-fronts bench-sampling pretension-night api docs docs-browser lint \
-         asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
+         bench-before bench-optimisers bench-auto bench-fronts bench-sampling pretension-night api docs docs-browser \
+         lint asan tsan fuzz fuzz-results install uninstall dist dist-check deb workflow-check
 FRONT += prose python-install mutants-random attack abi bench-instructions bits transcripts deb-check release-check
 .PHONY: $(FRONT) setup fuzzers clean help FORCE
 .DEFAULT_GOAL := all
@@ -539,7 +539,8 @@ $(PROGRAM): $(APP_OBJ) $(STATIC)
 	$(call say,LD,$@)
 	$(Q)$(LINK) -o $@ $^ $(PKG_LIBS)
 
-$(PEERS) $(FRONTS) $(BUDGET): $(BUILD)/optimisers/%: tools/optimisers/%.cpp tools/optimisers/unit_cube.hpp $(STATIC) Makefile
+$(PEERS) $(FRONTS) $(BUDGET): $(BUILD)/optimisers/%: tools/optimisers/%.cpp tools/optimisers/unit_cube.hpp $(STATIC) \
+                              Makefile
 	$(call say,LD,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CXX) -O2 -std=c++17 -Wall -Iinclude $$(pkg-config --cflags eigen3) $(LDFLAGS) -o $@ $< $(STATIC) -fopenmp \

@@ -471,8 +471,8 @@ static bool take_designs(const hf_generations *g, const char *places, const char
     return n_new == 0;
 }
 
-/* Copies the results of the individuals that are not kept, and takes over the others from the generation before. Returns
- * false if these are not n_fresh individuals. */
+/* Copies the results of the individuals that are not kept, and takes over the others from the generation before.
+ * Returns false if these are not n_fresh individuals. */
 static bool take_results(const hf_generations *g, const generation_row *row, const char *from, int n_fresh,
                          const hf_population *before, hf_population *population)
 {

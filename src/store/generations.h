@@ -82,10 +82,10 @@ bool hf_generations_are_due(const hf_generations *g);
 
 /* Adds a generation, which hf_optimiser_tell has ranked, to the waiting rows. These must not be full. piece
  * [HF_GENERATIONS_PAYLOAD] (may be NULL) becomes its payload, borrowed until the next generation is added. In place of
- * the designs, nine tenths of the bytes, the payload has their hash: hf_optimiser_next proposes the designs and their rates again from
- * the generation before. Results are those of the individuals that are not kept. Only if designs were moved into limits,
- * the payload has the new rows of designs and the row of each individual; without rows of each generation it then has
- * the designs of all individuals. */
+ * the designs, nine tenths of the bytes, the payload has their hash: hf_optimiser_next proposes the designs and their
+ * rates again from the generation before. Results are those of the individuals that are not kept. Only if designs were
+ * moved into limits, the payload has the new rows of designs and the row of each individual; without rows of each
+ * generation it then has the designs of all individuals. */
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece);
 
 /* Returns true if the size of a payload is that of its head and of the generations. */
@@ -93,8 +93,8 @@ bool hf_generations_are_payload(const hf_generations *g, const void *payload, si
 
 /* Copies the results and all other values of a payload, which hf_generations_are_payload has accepted, into
  * `population`, whose designs were proposed again. Individuals that were kept are copied from the generation `before`
- * (NULL: there is none). Returns false if the designs differ in any bit from those of the results, or if the results are
- * not those of the individuals that are not kept. */
+ * (NULL: there is none). Returns false if the designs differ in any bit from those of the results, or if the results
+ * are not those of the individuals that are not kept. */
 bool hf_generations_take_payload(const hf_generations *g, const void *payload, const hf_population *before,
                                  hf_population *population);
 

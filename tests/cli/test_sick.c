@@ -115,8 +115,8 @@ START_TEST(limits)
 END_TEST
 
 /* Whatever memory is there, from what the libraries need to be loaded to enough for the command: it ends, with words
- * unless it is done. net.yaml has a strut, whose matrix two threads factor by LAPACK. 800 MB are enough: when two threads
- * first allocate at the same time, glibc reserves 128 MB for each of them beside the buffers of OpenBLAS. */
+ * unless it is done. net.yaml has a strut, whose matrix two threads factor by LAPACK. 800 MB are enough: when two
+ * threads first allocate at the same time, glibc reserves 128 MB for each of them beside the buffers of OpenBLAS. */
 static const int memory_mb[] = {40, 50, 70, 120, 250, 320, 350, 356, 360, 366, 374, 800};
 static const char *const memory_command[] = {
     "sweep study.yaml --dir points --threads 2",

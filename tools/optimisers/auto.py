@@ -68,11 +68,11 @@ def look_at(o, net, case, arguments, known_m):
     psi, solves, took_s, variables = zip(*ours)
     found = {}
     if "cap" not in net:
-        done = subprocess.run(
-            [o.driver, case, str(o.peer_seeds), str(max(solves) + RANKED_MAX), str(statistics.median(took_s)), *arguments],
-            text=True, check=True, stdout=subprocess.PIPE)
-        for name, _, budget, used, best_m in csv.reader(done.stdout.splitlines()):
-            found.setdefault((name, budget), []).append((float(best_m), float(used)))
+        budget = str(max(solves) + RANKED_MAX), str(statistics.median(took_s))
+        done = subprocess.run([o.driver, case, str(o.peer_seeds), *budget, *arguments], text=True, check=True,
+                              stdout=subprocess.PIPE)
+        for name, _, by, used, best_m in csv.reader(done.stdout.splitlines()):
+            found.setdefault((name, by), []).append((float(best_m), float(used)))
     best, who = min([(min(psi), "hifdm run, method auto"), *((min(p for p, _ in runs), key[0])
                                                              for key, runs in found.items()), known_m])
     if min(psi) <= best * (1 + 1e-9):
