@@ -671,6 +671,27 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const dou
                     hf_no_design_cap(p, INFINITY, hint));
 }
 
+void hf_no_design_expected(hf_problem *p, const double *nearest, double ratio, hf_messages *messages)
+{
+    const hf_optimize_settings *o = &p->settings.optimize;
+    const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
+    hf_form_result shown;
+    char broken[2 * HF_HELD_NAME_SIZE];
+    name_broken(p, nearest, &shown, broken);
+    if (isfinite(ratio))
+        hf_warning(messages,
+                   "optimize: hifdm expects no feasible design. By the derivatives at the nearest design of the first "
+                   "generation, the ratio is at least %.4g, but boundary_ratio_cap is %g. The search goes on. Raise "
+                   "optimize.boundary_ratio_cap, or widen %s",
+                   ratio, o->boundary_ratio_cap, wider);
+    else
+        hf_warning(messages,
+                   "optimize: hifdm expects no feasible design. By the derivatives at the nearest design of the first "
+                   "generation, no design within the bounds meets all limits%s%s. The search goes on. Loosen the "
+                   "limits, or widen %s",
+                   *broken ? "; of this design, the" : "", broken + (*broken == ':'), wider);
+}
+
 const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const double *design, hf_status status,
                                    const char *advice, char text[HF_NO_DESIGN_SIZE])
 {

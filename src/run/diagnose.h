@@ -37,6 +37,11 @@ hf_status hf_reach_check(const hf_problem *problem, hf_messages *messages);
 hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, const double *nearest,
                                const char *advice, hf_messages *messages);
 
+/* Warns that no design of the first generation is feasible and that by the linear model at `nearest` [n_variable], its
+ * design with the least violation, no design within the bounds is. ratio: see hf_repair_expects_none. Overwrites the
+ * shape in the problem's workspace. */
+void hf_no_design_expected(hf_problem *problem, const double *nearest, double ratio, hf_messages *messages);
+
 /* Writes why Levenberg-Marquardt found no feasible design and ended with this status at this one, the nearest. Both
  * designs have [n_variable] values; `advice` is that of hf_feasible_check. Overwrites the shape in the problem's
  * workspace. Returns text. */

@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "run/problem_parts.h"
+#include "search/repair.h"
 #include "solve/certificate.h"
 #include "store/store_internal.h"
 
@@ -138,6 +139,34 @@ static void keep(void *context)
     q->store_cpu_s += hf_clock_thread_cpu_s() - start_s;
 }
 
+/* Returns the individual with the least violation, from which a refinement can find a feasible design, or -1 if none
+ * has a shape. */
+static int least_violation(const hf_population *p)
+{
+    int nearest = -1;
+    double least = INFINITY;
+    for (int i = 0; i < p->n_individual; i++) {
+        double violation = hf_population_violation(&p->result[i]);
+        if (!(violation < least)) continue;
+        nearest = i;
+        least = violation;
+    }
+    return nearest;
+}
+
+/* Warns if the children of the first generation have a model that has no feasible design. */
+static void doubt(const search *q)
+{
+    const hf_population *first = &q->told;
+    const hf_optimiser *o = &q->run->optimiser;
+    double ratio;
+    int nearest = least_violation(first);
+    if (first->generation > 0 || first->best >= 0 || nearest < 0 || !o->repair) return;
+    if (hf_repair_expects_none(o->repair, &ratio))
+        hf_no_design_expected(&q->run->problem, first->design + (size_t)nearest * (size_t)first->n_variable, ratio,
+                              q->messages);
+}
+
 /* Evolves until the optimiser has ended. Returns HF_OK; HF_INTERRUPTED, with all generations stored; or an error of the
  * store. */
 static hf_status evolve(search *q)
@@ -164,6 +193,7 @@ static hf_status evolve(search *q)
             more = hf_batch_next(&r->problem.batch, &r->optimiser, keep, q);
         HF_TRY(q->status);
         if (stops) break;
+        doubt(q);
     }
     HF_TRY(hf_store_hold(r->store, 0, q->messages));
     if (more) return HF_INTERRUPTED;
@@ -185,21 +215,6 @@ static hf_status store_best(hf_run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(hf_stage_measure(r, HF_STAGE_SEARCH, w, s, messages));
     if (r->problem.settings.optimize.n_front == 0) HF_TRY(hf_stage_take(r, w, messages)); /* a front has no result */
     return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, r->design, messages);
-}
-
-/* Returns the individual with the least violation, from which a refinement can find a feasible design, or -1 if none
- * has a shape. */
-static int least_violation(const hf_population *p)
-{
-    int nearest = -1;
-    double least = INFINITY;
-    for (int i = 0; i < p->n_individual; i++) {
-        double violation = hf_population_violation(&p->result[i]);
-        if (!(violation < least)) continue;
-        nearest = i;
-        least = violation;
-    }
-    return nearest;
 }
 
 hf_status hf_stage_search(hf_run *r, hf_summary *s, hf_messages *messages)

@@ -3,7 +3,7 @@
  *     best design -> shape -> values and rates of the limited items
  *     child -> predicted values -> limit that is broken most -> mirrored child -> predicted values -> ...
  *
- * Contents: memory - the model of a generation - limits - a child */
+ * Contents: memory - the model of a generation - limits - no design - a child */
 #include "search/repair.h"
 
 #include "base/arena.h"
@@ -21,11 +21,14 @@
 #define MIRROR 2.0
 #define PASSES 30     /* limits at which one child is mirrored */
 #define PROBES 8      /* one individual in so many is not moved */
+#define DOUBT 0.01    /* part of a value by which all designs must break a limit by the model */
 #define ROUNDING 1e-9 /* part of a value by which it may break a limit */
 
 /* The arrays for n classes of linked design variables, n_item limited items and n_child individuals. */
 #define REPAIR_FIELDS(X)                                                                                               \
     X(double, width2, n, "square of the width of the bounds of each class")                                            \
+    X(double, down, n, "step from the base to the lower bound of each class")                                          \
+    X(double, up, n, "step from the base to its upper bound")                                                          \
     X(double, rate, n_item *n, "[n_item][n] rates of the items")                                                       \
     X(double, constraint_rate, n_constraint *n, "[n_constraint][n] rates of the constraints by requirements")          \
     X(double, step, n_child *n, "[n_child][n] scratch: step from the base, then the move")                             \
@@ -131,6 +134,22 @@ static bool linearise(hf_repair *q)
     return true;
 }
 
+/* Computes the steps from the base to the bounds. A class has the smallest steps of its design variables. */
+static void find_steps(hf_repair *q, const double *base)
+{
+    const hf_model *m = q->v.model;
+    for (int j = 0; j < q->slopes.n; j++) {
+        q->down[j] = -INFINITY;
+        q->up[j] = INFINITY;
+    }
+    for (int k = 0; k < m->n_variable; k++) {
+        int j = q->slopes.class_of_variable[k];
+        double weight = hf_symmetry_weight(m, q->initial, k);
+        q->down[j] = fmax(q->down[j], (q->lower[k] - base[k]) / weight);
+        q->up[j] = fmin(q->up[j], (q->upper[k] - base[k]) / weight);
+    }
+}
+
 void hf_repair_begin(hf_repair *q, const hf_population *now)
 {
     hf_form_result r;
@@ -146,6 +165,7 @@ void hf_repair_begin(hf_repair *q, const hf_population *now)
     for (int i = 0; i < q->watch.n; i++)
         for (size_t j = 0; j < n; j++)
             q->rate[(size_t)i * n + j] = q->watch.rate[(1 + j) * (size_t)q->watch.ld + (size_t)i];
+    find_steps(q, base);
     q->base = base;
 }
 
@@ -179,6 +199,72 @@ static void look_at_cap(const hf_watch *t, int k, const double *value, broken *w
     if (low < 0 || !isfinite(t->cap[k])) return;
     double by = value[high] - t->cap[k] * value[low];
     if (by > worst->part * fabs(value[high])) *worst = (broken){low, high, t->cap[k], -1, by, by / fabs(value[high])};
+}
+
+/* ---- no design ---- */
+
+/* Returns the minimum of plus * value[a] + minus * value[b] over all designs within the bounds, by the model. */
+static double lowest(const hf_repair *q, double plus, int a, double minus, int b)
+{
+    size_t n = (size_t)q->slopes.n;
+    const double *of_a = q->rate + (size_t)a * n, *of_b = q->rate + (size_t)b * n;
+    double sum = plus * q->watch.item[a].value + minus * q->watch.item[b].value;
+    for (size_t j = 0; j < n; j++) {
+        double rate = plus * of_a[j] + minus * of_b[j];
+        if (rate != 0) sum += rate * (rate > 0 ? q->down[j] : q->up[j]);
+    }
+    return sum;
+}
+
+/* Returns true if the ratio of the values `high` and `low` exceeds this cap in all designs. */
+static bool is_above(const hf_repair *q, int high, int low, double cap)
+{
+    return lowest(q, 1, high, -cap, low) > DOUBT * q->watch.item[high].value;
+}
+
+/* Returns the largest cap that the ratio exceeds in all designs. It is at least `cap`. */
+static double lowest_ratio(const hf_repair *q, int high, int low, double cap)
+{
+    double above = cap, below = q->watch.item[high].value / q->watch.item[low].value;
+    for (int i = 0; i < 30; i++) {
+        double middle = 0.5 * (above + below);
+        *(is_above(q, high, low, middle) ? &above : &below) = middle;
+    }
+    return above;
+}
+
+/* Looks for two values of cap k whose ratio exceeds the cap in all designs. Those that keep it at the base do not. */
+static bool no_design_meets_cap(const hf_repair *q, int k, double *ratio)
+{
+    const hf_watch *t = &q->watch;
+    double cap = t->cap[k];
+    *ratio = cap;
+    for (int high = 0; high < t->n; high++)
+        for (int low = 0; low < t->n && t->item[high].ratio == k; low++)
+            if (t->item[low].ratio == k && t->item[low].value > 0 &&
+                t->item[high].value > *ratio * t->item[low].value && is_above(q, high, low, *ratio))
+                *ratio = lowest_ratio(q, high, low, *ratio);
+    return *ratio > cap;
+}
+
+bool hf_repair_expects_none(const hf_repair *q, double *ratio)
+{
+    const hf_watch *t = &q->watch;
+    *ratio = (double)NAN;
+    if (!q->base) return false;
+    for (int k = 0; k < t->n_cap; k++) {
+        double most;
+        if (!isfinite(t->cap[k]) || !no_design_meets_cap(q, k, &most)) continue;
+        if (k == 0 && t->has_cap) *ratio = most;
+        return true;
+    }
+    for (int i = 0; i < t->n; i++) {
+        const hf_watched *item = &t->item[i];
+        double margin = DOUBT * item->unit;
+        if (isfinite(item->upper) && lowest(q, 1, i, 0, i) > item->upper + margin) return true;
+        if (isfinite(item->lower) && -lowest(q, -1, i, 0, i) < item->lower - margin) return true;
+    }
+    return false;
 }
 
 /* ---- a child ---- */

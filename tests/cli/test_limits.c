@@ -65,6 +65,35 @@ START_TEST(a_cap_that_holds_it_is_named_and_met)
 }
 END_TEST
 
+#define EXPECTED                                                                                                       \
+    "optimize: hifdm expects no feasible design. By the derivatives at the nearest design of the first generation, "
+
+/* What no design can meet is named in the first generation, and only then. */
+START_TEST(a_limit_out_of_reach_is_named_at_once)
+{
+    static const struct {
+        const char *set, *words; /* words: NULL: there are feasible designs */
+    } of[] = {
+        {"optimize.boundary_ratio_cap=4.25", "the ratio is at least 4.5"},
+        {"optimize.boundary_ratio_cap=4.6", NULL},
+        {"optimize.limits=[{figure: tension, set: edge_tie, bounds: [14, 60]}]",
+         "no design within the bounds meets all limits; of this design, the tension of "},
+        {"optimize.limits=[{figure: tension, set: edge_tie, bounds: [9, 52]}]", NULL},
+        {"optimize.limits=[{figure: tension, set: edge_tie, bounds: [1, 35]}]",
+         "no design within the bounds meets all limits; of this design, the tension of "},
+    };
+    const char *flagship = keep(source_path("configs/chen2022.yaml"));
+    HIFDM(of[_i].words ? 3 : 0, "run", flagship, "-o", temp("r.h5"), "--set", of[_i].set, "--set",
+          "optimize.generations=3");
+    if (of[_i].words) {
+        ERRS("warning: " EXPECTED "%s", of[_i].words);
+        ERR(". The search goes on. ");
+    } else {
+        ck_assert_msg(!strstr(said.err, "expects no feasible"), "%s", said.err);
+    }
+}
+END_TEST
+
 /* A joint that does not move is at the least displacement, which holds nothing. */
 START_TEST(a_displacement_of_zero_holds_nothing)
 {
@@ -249,6 +278,7 @@ Suite *suite_cli_limits(void)
     tcase_add_loop_test(tests, nets_of_triangles_reach_their_optima, 0, 3);
     tcase_add_loop_test(tests, a_cap_that_does_not_hold_the_optimum_does_not_move_it, 0, 4);
     tcase_add_test(tests, a_cap_that_holds_it_is_named_and_met);
+    tcase_add_loop_test(tests, a_limit_out_of_reach_is_named_at_once, 0, 5);
     tcase_add_test(tests, a_displacement_of_zero_holds_nothing);
     tcase_add_loop_test(tests, a_start_beyond_its_displacements_is_led_in, 0, 4);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);

@@ -145,6 +145,46 @@ static hf_status linearise(void *room, int n_rate, hf_constraints_spread *spread
     return HF_OK;
 }
 
+/* The claim is made for a cap far below the least ratio of a generation, and no other design has a ratio below the one
+ * that it names. It is not made for a cap that designs meet, nor before there is a model. */
+START_TEST(a_cap_out_of_reach_is_known)
+{
+    static const hf_rule rule[] = {HF_RULE_FORCE_DENSITY, HF_RULE_TENSION};
+    hf_form_result r;
+    double ratio, least = INFINITY;
+    begin(rule[_i], _i ? 0.001 : 0.1);
+    hf_population *p = &d.optimiser.population, *next = &d.optimiser.next;
+    ck_assert_int_eq(hf_repair_create(&d.r.evaluator, p, &d.repair), HF_OK);
+    ck_assert(!hf_repair_expects_none(d.repair, &ratio));
+    hf_repair_begin(d.repair, p);
+    ck_assert(hf_repair_is_active(d.repair) && !hf_repair_expects_none(d.repair, &ratio));
+    ck_assert_double_nan(ratio);
+    hf_repair_free(d.repair);
+    const double factor = _i ? 1.05 : 1.3, cap = _i ? 1.02 : 1.1;
+    d.r.evaluator.boundary_ratio_cap = cap;
+    p->lower[0] = p->upper[0] = factor * d.r.initial[0]; /* one tension is higher than the others */
+    for (int i = 0; i < N_CHILD; i++)
+        p->design[i * p->n_variable] = p->lower[0];
+    evaluate_generation();
+    hf_optimiser_tell(&d.optimiser);
+    ck_assert_int_eq(hf_repair_create(&d.r.evaluator, p, &d.repair), HF_OK);
+    hf_repair_begin(d.repair, p);
+    ck_assert(hf_repair_expects_none(d.repair, &ratio));
+    ck_assert_double_gt(ratio, cap);
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        propose(test_seed() + seed);
+        for (int i = 0; i < N_CHILD; i++)
+            hf_repair_child(d.repair, next, i);
+        for (int i = 0; i < N_CHILD; i++) {
+            hf_evaluate(&d.r.evaluator, next->design + (size_t)i * (size_t)next->n_variable, &d.r.net.work, NULL, &r);
+            least = fmin(least, r.boundary_tension_ratio);
+        }
+    }
+    ck_assert_msg(least > 0.99 * ratio, "%g < %g", least, ratio);
+    end();
+}
+END_TEST
+
 START_TEST(children_come_within_requirements)
 {
     static const double unit = 1;
@@ -236,6 +276,7 @@ Suite *suite_unit_repair(void)
     TCase *tests = tcase_create("repair");
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, most_children_come_within_the_cap, 0, 2);
+    tcase_add_loop_test(tests, a_cap_out_of_reach_is_known, 0, 2);
     tcase_add_test(tests, children_come_within_requirements);
     tcase_add_loop_test(tests, children_stay_where_no_limit_binds, 0, 2);
     tcase_add_loop_test(tests, some_nets_have_no_repair, 0, 3);
