@@ -23,9 +23,9 @@ void hf_repair_begin(hf_repair *repair, const hf_population *now);
 /* Returns true if there is a model. */
 bool hf_repair_is_active(const hf_repair *repair);
 
-/* Returns true if the model has no design within the bounds that meets all limits: a value cannot come within 1 % of its
- * limit, or two tensions cannot come within 1 % of the cap on their ratio. *ratio: minimum of that ratio if it is the
- * boundary tension ratio, else NaN. */
+/* Returns true if the model has no design within the bounds that meets all limits: a value cannot come within 1 % of
+ * its limit, or two tensions cannot come within 1 % of the cap on their ratio. *ratio: minimum of that ratio if it is
+ * the boundary tension ratio, else NaN. */
 bool hf_repair_expects_none(const hf_repair *repair, double *ratio);
 
 /* Moves individual i of `next`. Several threads may move different individuals at the same time. One individual in
