@@ -291,11 +291,12 @@ bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: res
 	$(PYTHON) tools/optimisers/run.py --driver $(PEERS) --program $(PROGRAM) --seeds $(OPTIMISER_SEEDS) \
 	    --only $(call quote,$(OPTIMISER_ONLY)) --out $(BENCH_OUT)
 
-bench-auto: ## `method: auto` from 20 seeds beside nlopt and pagmo: results/bench/auto.csv, best.csv (10 minutes)
+bench-auto: ## `method: auto` from 20 seeds beside nlopt and pagmo: results/bench/auto.csv, best.csv, caps.csv (10 min)
 	$(Q)tools/setup.sh --optimisers
 	$(SUB) $(PROGRAM) $(BUDGET)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/optimisers/auto.py --driver $(BUDGET) --program $(PROGRAM) --out $(BENCH_OUT)
+	$(PYTHON) tools/optimisers/caps.py --program $(PROGRAM) --out $(BENCH_OUT)
 
 bench-fronts: ## fronts of two and three objectives beside pagmo's NSGA-II: results/bench/fronts.csv (2 minutes)
 	$(Q)tools/setup.sh --optimisers

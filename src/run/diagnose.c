@@ -671,25 +671,24 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const dou
                     hf_no_design_cap(p, INFINITY, hint));
 }
 
-void hf_no_design_expected(hf_problem *p, const double *nearest, double ratio, hf_messages *messages)
+void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf_messages *messages)
 {
-    const hf_optimize_settings *o = &p->settings.optimize;
+    const hf_limit_held *limit = &doubt->limit;
     const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
-    hf_form_result shown;
-    char broken[2 * HF_HELD_NAME_SIZE];
-    name_broken(p, nearest, &shown, broken);
-    if (isfinite(ratio))
-        hf_warning(messages,
-                   "optimize: hifdm expects no feasible design. By the derivatives at the nearest design of the first "
-                   "generation, the ratio is at least %.4g, but boundary_ratio_cap is %g. The search goes on. Raise "
-                   "optimize.boundary_ratio_cap, or widen %s",
-                   ratio, o->boundary_ratio_cap, wider);
-    else
-        hf_warning(messages,
-                   "optimize: hifdm expects no feasible design. By the derivatives at the nearest design of the first "
-                   "generation, no design within the bounds meets all limits%s%s. The search goes on. Loosen the "
-                   "limits, or widen %s",
-                   *broken ? "; of this design, the" : "", broken + (*broken == ':'), wider);
+    char what[2 * HF_HELD_NAME_SIZE], name[HF_HELD_NAME_SIZE], bound[64] = "boundary_ratio_cap";
+    if (doubt->constraint >= 0) {
+        snprintf(what, sizeof what, "bound of %s is missed in all designs",
+                 hf_problem_constraint_name(p, doubt->constraint, name, sizeof name));
+    } else {
+        if (limit->row != HF_LIMITS_CAP) snprintf(bound, sizeof bound, "its bound in optimize.limits");
+        snprintf(what, sizeof what, "%s is at %s %.4g in all designs, but %s is %g",
+                 hf_limits_name(&p->scene, &p->model, limit, name, sizeof name),
+                 limit->value > limit->bound ? "least" : "most", limit->value, bound, limit->bound);
+    }
+    hf_warning(messages,
+               "optimize: hifdm expects no feasible design. By the derivatives at the nearest design of the first "
+               "generation, the %s. The search goes on. Loosen this limit, or widen %s",
+               what, wider);
 }
 
 const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const double *design, hf_status status,

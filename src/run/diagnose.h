@@ -1,6 +1,7 @@
 /* diagnose - what is wrong or doubtful about a problem or a result, in the words of messages. */
 #pragma once
 
+#include "search/repair.h"
 #include <hifdm/carrier.h>
 #include <hifdm/population.h>
 #include <hifdm/problem.h>
@@ -37,10 +38,9 @@ hf_status hf_reach_check(const hf_problem *problem, hf_messages *messages);
 hf_status hf_no_design_evolved(hf_problem *problem, const hf_population *population, const double *nearest,
                                const char *advice, hf_messages *messages);
 
-/* Warns that no design of the first generation is feasible and that by the linear model at `nearest` [n_variable], its
- * design with the least violation, no design within the bounds is. ratio: see hf_repair_expects_none. Overwrites the
- * shape in the problem's workspace. */
-void hf_no_design_expected(hf_problem *problem, const double *nearest, double ratio, hf_messages *messages);
+/* Warns that no design of the first generation is feasible and that, by the linear model at its design with the least
+ * violation, none within the bounds meets this limit. */
+void hf_no_design_expected(const hf_problem *problem, const hf_repair_doubt *doubt, hf_messages *messages);
 
 /* Writes why Levenberg-Marquardt found no feasible design and ended with this status at this one, the nearest. Both
  * designs have [n_variable] values; `advice` is that of hf_feasible_check. Overwrites the shape in the problem's

@@ -173,6 +173,15 @@ bool hf_problem_is_constrained_by(const hf_problem *p, int row)
     return c && k < c->n;
 }
 
+const char *hf_problem_constraint_name(const hf_problem *p, int i_constraint, char *text, size_t size)
+{
+    char name[256];
+    int row = p->nets->constraints.row[i_constraint];
+    snprintf(text, size, "requirements.%d (%.160s)", row,
+             hf_requirement_name(&p->settings.requirement[row], name, sizeof name));
+    return text;
+}
+
 const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_t size)
 {
     const hf_constraints *c = p->objectives.constraints;
@@ -191,13 +200,12 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
     if (worst < 0) return text;
     if (n_missed > 1)
         snprintf(others, sizeof others, ", and %d more row%s missed", n_missed - 1, n_missed > 2 ? "s are" : " is");
-    int row = p->nets->constraints.row[worst];
-    const hf_requirement_settings *r = &p->settings.requirement[row];
+    const hf_requirement_settings *r = &p->settings.requirement[p->nets->constraints.row[worst]];
     /* A count is judged by tensions. */
     const char *unit = r->figure == HF_REQUIRED_SLACK ? "N" : hf_required_figure_unit[r->figure];
     if (fabs(p->point.constraint[worst] / c->unit[worst] / HF_BUILT_NO_VALUE - 1) < 1e-9) {
-        snprintf(text, size, ": bound of requirements.%d (%.160s) is missed, because the figure has no value%s", row,
-                 hf_requirement_name(r, name, sizeof name), others);
+        snprintf(text, size, ": bound of %s is missed, because the figure has no value%s",
+                 hf_problem_constraint_name(p, worst, name, sizeof name), others);
         return text;
     }
     bool is_over_samples = !isnan(r->share), is_length = !strcmp(unit, "m");
@@ -207,9 +215,9 @@ const char *hf_problem_broken_requirement(const hf_problem *p, char *text, size_
         times = 100 / c->unit[worst];
         unit = "%";
     }
-    snprintf(text, size, ": bound of requirements.%d (%.160s) is missed by %.3g%s%s%s%s", row,
-             hf_requirement_name(r, name, sizeof name), times * p->point.constraint[worst], *unit ? " " : "", unit,
-             is_over_samples ? " in samples of the search" : "", others);
+    snprintf(text, size, ": bound of %s is missed by %.3g%s%s%s%s",
+             hf_problem_constraint_name(p, worst, name, sizeof name), times * p->point.constraint[worst],
+             *unit ? " " : "", unit, is_over_samples ? " in samples of the search" : "", others);
     return text;
 }
 

@@ -17,6 +17,9 @@ const hf_constraints *hf_problem_constraints_of(const hf_problem *problem);
 /* Returns true if this row of `requirements` constrains designs. */
 bool hf_problem_is_constrained_by(const hf_problem *problem, int row);
 
+/* Writes the row of a constraint, such as "requirements.2 (tension of tie)". Returns text. */
+const char *hf_problem_constraint_name(const hf_problem *problem, int i_constraint, char *text, size_t size);
+
 /* Writes which requirement the design judged last in problem->point breaks most, as the end of a sentence, such as
  * ": bound of requirements.2 (tension of tie) is missed by 0.62 N". Writes "" if it breaks none. Returns text. */
 const char *hf_problem_broken_requirement(const hf_problem *problem, char *text, size_t size);

@@ -139,32 +139,13 @@ static void keep(void *context)
     q->store_cpu_s += hf_clock_thread_cpu_s() - start_s;
 }
 
-/* Returns the individual with the least violation, from which a refinement can find a feasible design, or -1 if none
- * has a shape. */
-static int least_violation(const hf_population *p)
-{
-    int nearest = -1;
-    double least = INFINITY;
-    for (int i = 0; i < p->n_individual; i++) {
-        double violation = hf_population_violation(&p->result[i]);
-        if (!(violation < least)) continue;
-        nearest = i;
-        least = violation;
-    }
-    return nearest;
-}
-
-/* Warns if the children of the first generation have a model that has no feasible design. */
+/* Warns if the children of the first generation have a model in which no design meets some limit. */
 static void doubt(const search *q)
 {
-    const hf_population *first = &q->told;
     const hf_optimiser *o = &q->run->optimiser;
-    double ratio;
-    int nearest = least_violation(first);
-    if (first->generation > 0 || first->best >= 0 || nearest < 0 || !o->repair) return;
-    if (hf_repair_expects_none(o->repair, &ratio))
-        hf_no_design_expected(&q->run->problem, first->design + (size_t)nearest * (size_t)first->n_variable, ratio,
-                              q->messages);
+    hf_repair_doubt found;
+    if (q->told.generation == 0 && q->told.best < 0 && o->repair && hf_repair_doubts(o->repair, &found))
+        hf_no_design_expected(&q->run->problem, &found, q->messages);
 }
 
 /* Evolves until the optimiser has ended. Returns HF_OK; HF_INTERRUPTED, with all generations stored; or an error of the
@@ -215,6 +196,21 @@ static hf_status store_best(hf_run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(hf_stage_measure(r, HF_STAGE_SEARCH, w, s, messages));
     if (r->problem.settings.optimize.n_front == 0) HF_TRY(hf_stage_take(r, w, messages)); /* a front has no result */
     return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, r->design, messages);
+}
+
+/* Returns the individual with the least violation, from which a refinement can find a feasible design, or -1 if none
+ * has a shape. */
+static int least_violation(const hf_population *p)
+{
+    int nearest = -1;
+    double least = INFINITY;
+    for (int i = 0; i < p->n_individual; i++) {
+        double violation = hf_population_violation(&p->result[i]);
+        if (!(violation < least)) continue;
+        nearest = i;
+        least = violation;
+    }
+    return nearest;
 }
 
 hf_status hf_stage_search(hf_run *r, hf_summary *s, hf_messages *messages)

@@ -19,9 +19,12 @@
  * would break it by the curvature of the values: measured on configs/chen2022.yaml with a cap of 4.6, which then had
  * 9.71 mm after 5000 evaluations instead of 9.21 mm. */
 #define MIRROR 2.0
-#define PASSES 30     /* limits at which one child is mirrored */
-#define PROBES 8      /* one individual in so many is not moved */
-#define DOUBT 0.01    /* part of a value by which all designs must break a limit by the model */
+#define PASSES 30  /* limits at which one child is mirrored */
+#define PROBES 8   /* one individual in so many is not moved */
+#define DOUBT 0.01 /* part of a value by which all designs must break a limit by the model */
+/* Units by which a requirement is missed above which samples or load cases may lack a shape, and so derivatives. A
+ * missing one counts as HF_BUILT_NO_VALUE units. */
+#define UNKNOWN 10
 #define ROUNDING 1e-9 /* part of a value by which it may break a limit */
 
 /* The arrays for n classes of linked design variables, n_item limited items and n_child individuals. */
@@ -233,37 +236,55 @@ static double lowest_ratio(const hf_repair *q, int high, int low, double cap)
     return above;
 }
 
-/* Looks for two values of cap k whose ratio exceeds the cap in all designs. Those that keep it at the base do not. */
-static bool no_design_meets_cap(const hf_repair *q, int k, double *ratio)
+/* Looks for the two values of cap k whose ratio exceeds the cap most in all designs. Those that keep it at the base do
+ * not exceed it. */
+static bool doubts_cap(const hf_repair *q, int k, hf_repair_doubt *doubt)
 {
     const hf_watch *t = &q->watch;
-    double cap = t->cap[k];
-    *ratio = cap;
+    hf_limit_held *limit = &doubt->limit;
+    limit->value = t->cap[k];
     for (int high = 0; high < t->n; high++)
-        for (int low = 0; low < t->n && t->item[high].ratio == k; low++)
-            if (t->item[low].ratio == k && t->item[low].value > 0 &&
-                t->item[high].value > *ratio * t->item[low].value && is_above(q, high, low, *ratio))
-                *ratio = lowest_ratio(q, high, low, *ratio);
-    return *ratio > cap;
+        for (int low = 0; low < t->n && t->item[high].ratio == k; low++) {
+            const hf_watched *of = &t->item[low];
+            if (of->ratio != k || !(of->value > 0) || !(t->item[high].value > limit->value * of->value)) continue;
+            if (!is_above(q, high, low, limit->value)) continue;
+            limit->value = lowest_ratio(q, high, low, limit->value);
+            limit->cable = t->item[high].cable;
+            limit->other = of->cable;
+        }
+    limit->bound = t->cap[k];
+    limit->row = k == 0 && t->has_cap ? HF_LIMITS_CAP : 0;
+    return limit->value > t->cap[k];
 }
 
-bool hf_repair_expects_none(const hf_repair *q, double *ratio)
+/* Looks at the bounds of a value. Rates of 0 are those of a slack cable, or of a net without a shape in a load case. */
+static bool doubts_bound(const hf_repair *q, int i, hf_repair_doubt *doubt)
+{
+    const hf_watched *item = &q->watch.item[i];
+    double least = lowest(q, 1, i, 0, i), most = -lowest(q, -1, i, 0, i), margin = DOUBT * item->unit;
+    bool is_unknown = item->constraint >= 0 ? item->value > UNKNOWN * item->unit : !(item->value > 0);
+    if (is_unknown || !(least < most)) return false;
+    bool is_above = isfinite(item->upper) && least > item->upper + margin;
+    if (!is_above && !(isfinite(item->lower) && most < item->lower - margin)) return false;
+    doubt->limit.cable = item->cable;
+    doubt->limit.attachment = item->attachment;
+    doubt->limit.value = is_above ? least : most;
+    doubt->limit.bound = is_above ? item->upper : item->lower;
+    doubt->constraint = item->constraint;
+    return true;
+}
+
+bool hf_repair_doubts(const hf_repair *q, hf_repair_doubt *doubt)
 {
     const hf_watch *t = &q->watch;
-    *ratio = (double)NAN;
-    if (!q->base) return false;
-    for (int k = 0; k < t->n_cap; k++) {
-        double most;
-        if (!isfinite(t->cap[k]) || !no_design_meets_cap(q, k, &most)) continue;
-        if (k == 0 && t->has_cap) *ratio = most;
-        return true;
-    }
-    for (int i = 0; i < t->n; i++) {
-        const hf_watched *item = &t->item[i];
-        double margin = DOUBT * item->unit;
-        if (isfinite(item->upper) && lowest(q, 1, i, 0, i) > item->upper + margin) return true;
-        if (isfinite(item->lower) && -lowest(q, -1, i, 0, i) < item->lower - margin) return true;
-    }
+    *doubt = (hf_repair_doubt){.limit = {.cable = -1, .other = -1, .attachment = -1}, .constraint = -1};
+    for (int j = 0; q->base && j < q->slopes.n; j++)
+        if (!(q->down[j] <= q->up[j])) return false; /* linked variables without a common step */
+    for (int k = 0; q->base && k < t->n_cap; k++)
+        if (isfinite(t->cap[k]) && doubts_cap(q, k, doubt)) return true;
+    doubt->limit.row = 0;
+    for (int i = 0; q->base && i < t->n; i++)
+        if (doubts_bound(q, i, doubt)) return true;
     return false;
 }
 

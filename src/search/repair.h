@@ -5,6 +5,7 @@
  * bounds. */
 #pragma once
 
+#include "solve/limits.h"
 #include <hifdm/evaluate.h>
 #include <hifdm/population.h>
 
@@ -23,10 +24,17 @@ void hf_repair_begin(hf_repair *repair, const hf_population *now);
 /* Returns true if there is a model. */
 bool hf_repair_is_active(const hf_repair *repair);
 
-/* Returns true if the model has no design within the bounds that meets all limits: a value cannot come within 1 % of
- * its limit, or two tensions cannot come within 1 % of the cap on their ratio. *ratio: minimum of that ratio if it is
- * the boundary tension ratio, else NaN. */
-bool hf_repair_expects_none(const hf_repair *repair, double *ratio);
+/* A limit that no design within the bounds meets by the model. `limit` has cables or attachment, bound, and as its
+ * value an estimate of the best value that designs reach, on the wrong side of the bound. */
+typedef struct {
+    hf_limit_held limit; /* row: HF_LIMITS_CAP for the boundary tension ratio, else 0 */
+    int constraint;      /* constraint by a requirement, or -1 */
+} hf_repair_doubt;
+
+/* Looks for a limit that the model exceeds by more than 1 % at all designs within the bounds. Each limit is looked at
+ * alone, and of a ratio each pair of tensions. Values that no variable changes are left out, because they may have no
+ * derivatives. Returns false if there is no such limit, or no model. */
+bool hf_repair_doubts(const hf_repair *repair, hf_repair_doubt *doubt);
 
 /* Moves individual i of `next`. Several threads may move different individuals at the same time. One individual in
  * eight stays as it is and shows whether the limits still bind. */

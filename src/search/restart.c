@@ -32,6 +32,7 @@ typedef struct {
     double *best;            /* [n_variable] design of the best optimum */
     double size_m;
     int ranked_max; /* maximum number of starts that one ranking evaluates */
+    int n_ranked;   /* starts evaluated so far for rankings */
     void *block;
 } restart;
 
@@ -93,6 +94,7 @@ static void rank_together(restart *q, int n, const int *variable)
     for (int i = 0; i < n; i++)
         flip(q, variable[i], q->tried + (size_t)i * (size_t)q->bounds->n_variable);
     hf_batch_run(q->batch, n, q->tried, NULL, q->outcome);
+    q->n_ranked += n;
     for (int i = 0; i < n; i++) {
         const hf_form_result *r = &q->outcome[i];
         q->flipped[variable[i]] = r->status == HF_OK ? -1 / (1 + r->merit) : hf_population_violation(r);
@@ -225,6 +227,7 @@ hf_status hf_restart_run(hf_batch *batch, const hf_population *p, int max_iterat
         memcpy(q.best, design, (size_t)p->n_variable * sizeof *design);
         count(&q, r.merit);
         status = refine_all(&q, max_iterations, watcher, result);
+        result->evaluations += q.n_ranked;
         if (status == HF_OK) memcpy(design, q.best, (size_t)p->n_variable * sizeof *design);
     }
     hf_objectives_point_free(&point);

@@ -246,7 +246,7 @@ static void measure_rows(const hf_generations *g, int n_individual, size_t bytes
 hf_status hf_generations_create(hf_generations *g)
 {
     hf_arena arena = {0};
-    size_t waiting = sizeof(double), bytes = 0;
+    size_t waiting = 0, bytes = 0;
     g->base_psi_m = (double)NAN;
     measure_rows(g, g->n_individual, g->whole_bytes);
     measure_rows(g, n_in_row(g), g->row_bytes);
@@ -291,7 +291,7 @@ static char *slot(const hf_generations *g, int i)
     return g->row[i] + (size_t)n * g->row_bytes[i];
 }
 
-/* Takes a word of 8 bytes into a chain of a hash. For either of both the result is a bijection of the other one. */
+/* Takes a word of 8 bytes into a chain of a hash. If chain or word is fixed, the result is a bijection of the other. */
 static uint64_t hash_word(uint64_t chain, const void *word)
 {
     uint64_t bits;
@@ -529,6 +529,7 @@ bool hf_generations_are_sound(const hf_population *p)
 {
     generation_row row[HF_GENERATIONS_PIECES];
     list_rows(p, row);
+    if (p->best < -1 || p->best >= p->n_individual) return false;
     for (int i = HF_ROW_EVALUATED; i < HF_ROW_BEST_INDIVIDUAL; i++)
         if (!are_words(&row[i], p->n_individual)) return false;
     for (int i = 0; i < p->n_individual; i++) {

@@ -16,7 +16,7 @@
  *
  * By optimize.store a file may have fewer rows of individuals: those of the best individual of each generation, or
  * those of every n-th generation. Figures of a generation always have a row. The last generation is then stored as a
- * whole in /ga/last. */
+ * whole in /search/population/last. */
 #pragma once
 
 #include "store/layout.h"
@@ -88,7 +88,7 @@ bool hf_generations_are_due(const hf_generations *g);
  * generation it then has the designs of all individuals. */
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece);
 
-/* Returns true if the size of a payload is that of its head and of the generations. */
+/* Returns true if the numbers in the head of a payload are possible and the payload has the size that follows. */
 bool hf_generations_are_payload(const hf_generations *g, const void *payload, size_t bytes);
 
 /* Copies the results and all other values of a payload, which hf_generations_are_payload has accepted, into

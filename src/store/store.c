@@ -22,10 +22,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A publication is due when PUBLISH_RATIO times the duration of the last one has passed, with that of the copy which
- * followed it. Publishing then takes 2 % of the run. At least PUBLISH_S must have passed, so that most short runs are
- * published only at their beginning and their end. The tests of the store, of resuming and of interrupting pass with
- * ratios from 5 to 500 and times from 0.05 to 5 s. */
+/* A publication is due when PUBLISH_RATIO times the duration of the last one has passed. Publishing then takes 2 % of
+ * the run. At least PUBLISH_S must have passed, so that most short runs are published only at their beginning and their
+ * end. The tests of the store, of resuming and of interrupting pass with ratios from 5 to 500 and times from 0.05 to 5
+ * s. */
 #define PUBLISH_RATIO 50
 #define PUBLISH_S 2
 /* Bytes that a search may write beside those of its file, as a part of the file that it will have: the journal, and the
@@ -410,7 +410,7 @@ hf_status hf_store_publish(hf_store *s, const hf_summary *summary, bool at_once,
     HF_TRY(s->f.io.status);
     if (s->is_continued) return HF_OK; /* the earlier result remains until there is a finished one */
     double since_s = now_s - s->published_at_s;
-    bool is_due = at_once || (since_s >= PUBLISH_S && since_s >= PUBLISH_RATIO * (s->publish_s + s->f.copy_s));
+    bool is_due = at_once || (since_s >= PUBLISH_S && since_s >= PUBLISH_RATIO * s->publish_s);
     if (is_due && !at_once && is_too_much(s)) {
         s->published_at_s = now_s; /* asked again later */
         is_due = false;

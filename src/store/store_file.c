@@ -1,7 +1,6 @@
 /* Implements store_file.h. Sections: names and checks, the temporary file, publishing, the end. */
 #include "store/store_file.h"
 
-#include "base/clock.h"
 #include "base/file_io.h"
 #include "base/file_out.h"
 #include "base/path.h"
@@ -101,9 +100,7 @@ static void copy_visible(hf_store_file *f)
 void hf_store_file_open(hf_store_file *f)
 {
     if (f->io.file >= 0 || f->io.status != HF_OK) return;
-    double start_s = hf_clock_s();
     copy_visible(f);
-    f->copy_s = hf_clock_s() - start_s;
     if (f->io.status == HF_OK) hf_hdf5_open_to_write(&f->io, &f->out);
 }
 

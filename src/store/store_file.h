@@ -47,7 +47,6 @@ typedef struct {
     int visible;                              /* descriptor of that file, for copies even if its name is taken; or -1 */
     hf_file_out out;                          /* out.path is RESULT, out.file the temporary file */
     int64_t flowing; /* bytes of the temporary file that the system was asked to write to the disk */
-    double copy_s;   /* wall time of the last copy of the visible file, s */
     int64_t beside;  /* bytes written so far that are not in the file: copies, and journals that were rotated */
 } hf_store_file;
 

@@ -43,7 +43,6 @@ static hf_status count_record(void *context, int generation, const void *payload
 {
     hf_store *s = context;
     hf_status status;
-    (void)payload;
     s->n_journal += is_news(s, generation, payload, bytes, s->rows.n_stored + s->n_journal, &status);
     return status;
 }

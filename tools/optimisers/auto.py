@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Measures `method: auto` from many seeds, beside other optimisers with its budget: `make bench-auto`.
 
-The nets are those of run.py, and nets A, B and C of METHOD, "Other local optima". Nets with a cap are without other
-optimisers, because those of budget.cpp know no cap. All run on one thread. The script writes into --out:
+The nets are those of run.py, and nets A, B and C of METHOD, "Other local optima". Nets with a cap in their name have
+no other optimisers, because those of budget.cpp know no constraints. All run on one thread. The script writes into --out:
 
 auto.csv  per net and optimiser: the budget ("solves": as many form-findings as `auto` uses at most; "time": its
-          processor time), the number of seeds that come within 1e-6 of the best psi known, psi above that (median and
-          maximum over seeds, in %), the median number of form-findings, and for `auto` its time, in times of one
+          time of refinements plus the processor time of its search, median over seeds), the number of seeds that come
+          within 1e-6 times the lowest psi known, psi above that (median and maximum over seeds, in %), the median
+          number of form-findings, and for `auto` its time, in times of one
           refinement of the best design of a first generation (`ga+lm` with one generation; means over seeds)
-best.csv  per net the lowest psi known, who found it, and the command that finds it at the commit given
+best.csv  per net the lowest psi known, here or in the optimisers.csv and best.csv of --out; who found it; and the
+          command and commit with which `auto` finds its own lowest psi
 """
 
 import argparse
@@ -23,7 +25,6 @@ from pathlib import Path
 import run
 from running_times import write_rows
 
-RANKED_MAX = 4 * 64  # evaluations that rank starts at other bounds (src/search/restart.c), at most
 REACHED = 1e-6
 LIMITS = "tests/verify/data/limits/"
 HEADS = {
@@ -42,14 +43,21 @@ def problems():
             "--set", f"scene.import.cables={LIMITS}triangles_{net}_cables.csv"]
 
 
+def result_of(o, case, arguments, method, seed):
+    """Returns the JSON object of a run with this method, or None if it found no design, and what it said."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([o.program, "run", case, "-o", folder + "/r.h5", "--json", "--threads", "1", *arguments,
+                               "--set", "optimize.method=" + method, "--seed", str(seed)], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    if done.returncode not in (0, 3):
+        raise RuntimeError(done.stderr)
+    return (json.loads(done.stdout) if done.returncode == 0 else None), done.stderr
+
+
 def solve(o, case, arguments, method, seed):
     """Returns psi (m), form-findings and time without storing (s) of a run with this method, and its number of
     variables."""
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([o.program, "run", case, "-o", folder + "/r.h5", "--json", "--threads", "1", *arguments,
-                               "--set", "optimize.method=" + method, "--seed", str(seed)], text=True, check=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    of = json.loads(done.stdout)
+    of = result_of(o, case, arguments, method, seed)[0]
     search = of.get("search") or {"evaluations": 0, "cpu_s": 0, "store_cpu_s": 0, "independent_variables": 0}
     return (of["refine"]["psi_m"], of["refine"]["evaluations"] + search["evaluations"],
             of["refine"]["wall_s"] + search["cpu_s"] - search["store_cpu_s"], search["independent_variables"])
@@ -68,7 +76,7 @@ def look_at(o, net, case, arguments, known_m):
     psi, solves, took_s, variables = zip(*ours)
     found = {}
     if "cap" not in net:
-        budget = str(max(solves) + RANKED_MAX), str(statistics.median(took_s))
+        budget = str(max(solves)), str(statistics.median(took_s))
         done = subprocess.run([o.driver, case, str(o.peer_seeds), *budget, *arguments], text=True, check=True,
                               stdout=subprocess.PIPE)
         for name, _, by, used, best_m in csv.reader(done.stdout.splitlines()):
@@ -101,6 +109,10 @@ def main():
     if (o.out / "optimisers.csv").exists():
         for row in csv.DictReader((o.out / "optimisers.csv").open()):
             known[row["net"]] = 1e-3 * float(row["psi_star_mm"]), row["psi_star_of"]
+    if (o.out / "best.csv").exists():
+        for row in csv.DictReader((o.out / "best.csv").open()):
+            known[row["net"]] = min(known.get(row["net"], (float("inf"), "")),
+                                    (1e-3 * float(row["psi_mm"]), row["found_by"]))
     tables = {name: [] for name in HEADS}
     order = [problem[0] for problem in problems()]
     for net, case, arguments in problems():

@@ -1,4 +1,4 @@
-/* budget - other people's optimisers on a case without a cap, with the budget of `hifdm run` with `method: auto`.
+/* budget - other people's optimisers on a case without binding constraints, with the budget of `method: auto`.
  *
  *     budget CASE SEEDS SOLVES SECONDS [--set KEY=VALUE]...
  *
@@ -84,6 +84,7 @@ double with_gradient(unsigned n, const double *v, double *gradient, void *)
     const unsigned blocks = hf_problem_objective_blocks(&problem);
     char name[HF_OBJECTIVE_NAME_SIZE];
     hf_messages said{};
+    hf_form_result r{};
     std::vector<double> design(n), residual;
     double sum = 0, price = gradient ? gradient_price : 1;
     now->demand(price);
@@ -93,8 +94,8 @@ double with_gradient(unsigned n, const double *v, double *gradient, void *)
         rows += blocks >> i & 1 ? (size_t)some : 0;
     residual.resize(rows);
     bool ok = hf_problem_residuals(&problem, design.data(), blocks, residual.data(), nullptr, &said) == HF_OK;
-    for (double r : residual)
-        sum += r * r;
+    for (double one : residual)
+        sum += one * one;
     double psi_m = ok ? std::sqrt(sum) : no_shape_m;
     if (gradient) {
         std::fill(gradient, gradient + n, 0.0);
@@ -103,7 +104,9 @@ double with_gradient(unsigned n, const double *v, double *gradient, void *)
                 gradient[k] *= (upper[k] - lower[k]) / psi_m;
     }
     hf_messages_free(&said);
-    return now->note(psi_m, price);
+    hf_batch_run(&problem.batch, 1, design.data(), nullptr, &r); /* residuals know no cap */
+    now->note(r.status == HF_OK ? psi_m : no_shape_m, price);
+    return psi_m;
 }
 
 /* ---- optimisers ---- */
@@ -117,7 +120,8 @@ void run_nlopt(nlopt::algorithm algorithm, nlopt::func function, unsigned seed)
     if (algorithm == nlopt::LN_BOBYQA) o.set_initial_step(0.1);
     o.set_ftol_rel(1e-15);
     o.set_xtol_rel(1e-12);
-    auto v = make_variables(seed == 1 ? problem.initial : &first[(size_t)genes() * (1 + seed % (population - 1))], false);
+    const double *random = &first[(size_t)genes() * (1 + seed % (population - 1))];
+    auto v = make_variables(seed == 1 ? problem.initial : random, false);
     for (double &x : v)
         x = std::fmin(1, std::fmax(0, x));
     double least;

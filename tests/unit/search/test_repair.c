@@ -151,14 +151,14 @@ START_TEST(a_cap_out_of_reach_is_known)
 {
     static const hf_rule rule[] = {HF_RULE_FORCE_DENSITY, HF_RULE_TENSION};
     hf_form_result r;
-    double ratio, least = INFINITY;
+    double least = INFINITY;
+    hf_repair_doubt found;
     begin(rule[_i], _i ? 0.001 : 0.1);
     hf_population *p = &d.optimiser.population, *next = &d.optimiser.next;
     ck_assert_int_eq(hf_repair_create(&d.r.evaluator, p, &d.repair), HF_OK);
-    ck_assert(!hf_repair_expects_none(d.repair, &ratio));
+    ck_assert(!hf_repair_doubts(d.repair, &found));
     hf_repair_begin(d.repair, p);
-    ck_assert(hf_repair_is_active(d.repair) && !hf_repair_expects_none(d.repair, &ratio));
-    ck_assert_double_nan(ratio);
+    ck_assert(hf_repair_is_active(d.repair) && !hf_repair_doubts(d.repair, &found));
     hf_repair_free(d.repair);
     const double factor = _i ? 1.05 : 1.3, cap = _i ? 1.02 : 1.1;
     d.r.evaluator.boundary_ratio_cap = cap;
@@ -169,8 +169,10 @@ START_TEST(a_cap_out_of_reach_is_known)
     hf_optimiser_tell(&d.optimiser);
     ck_assert_int_eq(hf_repair_create(&d.r.evaluator, p, &d.repair), HF_OK);
     hf_repair_begin(d.repair, p);
-    ck_assert(hf_repair_expects_none(d.repair, &ratio));
+    ck_assert(hf_repair_doubts(d.repair, &found));
+    double ratio = found.limit.value;
     ck_assert_double_gt(ratio, cap);
+    ck_assert(found.limit.row == HF_LIMITS_CAP && found.limit.cable >= 0 && found.limit.other >= 0);
     for (uint64_t seed = 1; seed <= 20; seed++) {
         propose(test_seed() + seed);
         for (int i = 0; i < N_CHILD; i++)
