@@ -2,7 +2,8 @@
 """Measures `method: auto` from many seeds, beside other optimisers with its budget: `make bench-auto`.
 
 The nets are those of run.py, and nets A, B and C of METHOD, "Other local optima". Nets with a cap in their name have
-no other optimisers, because those of budget.cpp know no constraints. All run on one thread. The script writes into --out:
+no other optimisers, because those of budget.cpp know no constraints. All run on one thread. The script writes into
+--out:
 
 auto.csv  per net and optimiser: the budget ("solves": as many form-findings as `auto` uses at most; "time": its
           time of refinements plus the processor time of its search, median over seeds), the number of seeds that come
