@@ -1,7 +1,8 @@
 /* The journal of a run. The first byte of the input says how the rest is meant: bit 0: edits to the journal of a real
  * run, each two bytes of offset, one of length and that many bytes, else the journal itself; bit 1: the check sums are
  * put right afterwards, so that damage reaches what lies behind them; bit 2: the end is cut off as well, at an offset
- * given by two bytes. The records are taken as a store takes them, into an optimiser that breeds the designs again. */
+ * given by two bytes; bits 3 to 7: the remainder by 3 says which generations have rows of individuals. The records are
+ * taken as a store takes them, into an optimiser that breeds the designs again. */
 #include "fuzz/fuzz.h"
 #include "small_ga.h"
 
@@ -28,6 +29,11 @@ static const hf_model model = {.n_variable = N_VARIABLE,
                                .variable_leader = leader,
                                .n_leader = N_VARIABLE};
 
+/* Values of hf_generations.every, and the one of this input. */
+static const int every[] = {1, 2, HF_GENERATIONS_BEST};
+enum { N_EVERY = sizeof every / sizeof *every };
+static int kind;
+
 typedef struct {
     hf_optimize_settings settings; /* of the optimiser, which borrows them */
     hf_optimiser optimiser;
@@ -40,7 +46,7 @@ static void open_run(run *r)
     *r = (run){.settings = small_ga(N_INDIVIDUAL, N_GENERATION + 2)};
     FUZZ_REQUIRE(hf_optimiser_create(&hf_optimiser_ga, &r->settings, &model, initial, &r->optimiser) == HF_OK);
     r->rows = (hf_generations){
-        .n_individual = N_INDIVIDUAL, .n_variable = N_VARIABLE, .limit = r->settings.generations, .every = 1};
+        .n_individual = N_INDIVIDUAL, .n_variable = N_VARIABLE, .limit = r->settings.generations, .every = every[kind]};
     FUZZ_REQUIRE(hf_generations_create(&r->rows) == HF_OK);
 }
 
@@ -57,8 +63,8 @@ static hf_journal open_journal(int file)
 
 /* ---- a real journal ---- */
 
-static uint8_t *real;
-static size_t real_size;
+static uint8_t *real[N_EVERY];
+static size_t real_size[N_EVERY];
 
 static void make_real(int file)
 {
@@ -82,9 +88,9 @@ static void make_real(int file)
         FUZZ_REQUIRE(hf_journal_append(&journal, g, piece, HF_GENERATIONS_PAYLOAD, &messages) == HF_OK);
     }
     close_run(&r);
-    real_size = (size_t)journal.size;
-    real = malloc(real_size);
-    FUZZ_REQUIRE(real && pread(file, real, real_size, 0) == (ssize_t)real_size);
+    real_size[kind] = (size_t)journal.size;
+    real[kind] = malloc(real_size[kind]);
+    FUZZ_REQUIRE(real[kind] && pread(file, real[kind], real_size[kind], 0) == (ssize_t)real_size[kind]);
 }
 
 /* ---- damage ---- */
@@ -105,10 +111,10 @@ static void repair(uint8_t *journal, size_t size)
 static void write_journal(int file, const uint8_t *data, size_t size)
 {
     int how = size ? data[0] : 0;
-    size_t at = size > 0, n = how & 1 ? real_size : size - at;
+    size_t at = size > 0, n = how & 1 ? real_size[kind] : size - at;
     uint8_t *journal = malloc(n + 1);
     FUZZ_REQUIRE(journal != NULL);
-    memcpy(journal, how & 1 ? real : data + at, n);
+    memcpy(journal, how & 1 ? real[kind] : data + at, n);
     if ((how & 4) && (how & 1) && at + 2 <= size) {
         n = (data[at] + 256u * data[at + 1]) % (n + 1);
         at += 2;
@@ -139,7 +145,9 @@ static hf_status take(void *context, int generation, const void *payload, size_t
         if (!hf_optimiser_next(o)) return HF_DIFFERENT;
     }
     const hf_population *before = generation > 0 ? &o->next : NULL;
-    if (!hf_generations_take_payload(&r->rows, payload, before, &o->population)) return HF_DIFFERENT;
+    if (!hf_generations_take_payload(&r->rows, payload, before, &o->population) ||
+        !hf_generations_are_sound(&o->population))
+        return HF_DIFFERENT;
     o->is_fresh = false;
     hf_generations_add(&r->rows, &o->population, NULL);
     r->n_taken++;
@@ -171,8 +179,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         fuzz_path("journal", path);
         file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
         FUZZ_REQUIRE(file >= 0);
-        make_real(file);
+        for (kind = 0; kind < N_EVERY; kind++)
+            make_real(file);
     }
+    kind = size ? (data[0] >> 3) % N_EVERY : 0;
     write_journal(file, data, size);
     int n = replay(file, &bytes);
     /* what was cut off stays away, and what was whole stays */

@@ -32,7 +32,7 @@ CASES = {
     "ga": NET + GA % 4 + "surface: {frequencies_Hz: [1e9, 3e10]}\n",
     "truss": NET + "truss: {}\n" + GA % 3,
     "form": NET,
-    "night": NET + GA % 4000,
+    "night": NET + (GA % 20000).replace("seed", "stagnation_generations: 20000, seed"),  # a second or more
 }
 STUDY = "base: ga.yaml\nsweep:\n  form.pretension_N: [8, 9, 10]\n  form.method: [hifdm]\n"
 
