@@ -11,7 +11,7 @@ auto.csv  per net and optimiser: the budget ("solves": as many form-findings as 
           number of form-findings, and for `auto` its time, in times of one
           refinement of the best design of a first generation (`ga+lm` with one generation; means over seeds)
 best.csv  per net the lowest psi known, here or in the optimisers.csv and best.csv of --out; who found it; and the
-          command and commit with which `auto` finds its own lowest psi
+          command with which `auto` finds its own lowest psi, and the last commit to src or include
 """
 
 import argparse
@@ -104,7 +104,7 @@ def main():
     options.add_argument("--peer-seeds", type=int, default=5, help="of each other optimiser")
     options.add_argument("--out", type=Path, required=True)
     o = options.parse_args()
-    o.commit = subprocess.run(["git", "describe", "--always", "--dirty"], text=True, check=True,
+    o.commit = subprocess.run(["git", "log", "-1", "--format=%h", "--", "src", "include"], text=True, check=True,
                               stdout=subprocess.PIPE).stdout.strip()
     known = {}
     if (o.out / "optimisers.csv").exists():
