@@ -112,6 +112,7 @@ END_TEST
 static struct {
     int cable;
     double most_N, tension_N;
+    bool has_no_rates;
 } required;
 
 static hf_status open_nothing(const hf_constraints *c, void **room)
@@ -140,7 +141,7 @@ static hf_status linearise(void *room, int n_rate, hf_constraints_spread *spread
     (void)room;
     for (int j = 0; j < n_rate; j++) {
         spread(context, j, move, tension_rate);
-        rate[j] = tension_rate[required.cable];
+        rate[j] = required.has_no_rates ? 0 : tension_rate[required.cable];
     }
     return HF_OK;
 }
@@ -183,6 +184,39 @@ START_TEST(a_cap_out_of_reach_is_known)
         }
     }
     ck_assert_msg(least > 0.99 * ratio, "%g < %g", least, ratio);
+    end();
+}
+END_TEST
+
+/* The tension of a cable changes by up to 0.1 N. A requirement that asks for a change of 5 N is out of reach. There is
+ * no claim if it is so far away that samples may lack a shape, if there are no rates, or if it is within reach. */
+START_TEST(only_a_requirement_out_of_reach_is_named)
+{
+    static const struct {
+        double change_N;
+        bool has_no_rates, is_named;
+    } of[] = {{5, false, true}, {50, false, false}, {5, true, false}, {0.02, false, false}};
+    static const double unit = 1;
+    const hf_constraints c = {1, &unit, open_nothing, close_nothing, measure, linearise};
+    hf_repair_doubt found;
+    begin(HF_RULE_FORCE_DENSITY, 0.1);
+    hf_population *now = &d.optimiser.population;
+    hf_objectives objectives = {.model = &d.r.net.model, .constraints = &c};
+    d.r.evaluator.boundary_ratio_cap = INFINITY;
+    required.cable = d.r.net.model.variable_cable[0];
+    required.has_no_rates = of[_i].has_no_rates;
+    hf_form_result r;
+    hf_evaluate(&d.r.evaluator, now->design + (size_t)now->best * (size_t)now->n_variable, &d.r.net.work, NULL, &r);
+    required.most_N = d.r.net.work.tension_N[required.cable] - of[_i].change_N;
+    d.r.evaluator.objectives = &objectives;
+    ck_assert_int_eq(hf_repair_create(&d.r.evaluator, now, &d.repair), HF_OK);
+    now->trial_status[0] = HF_OUT_OF_LIMITS;
+    hf_repair_begin(d.repair, now);
+    ck_assert(hf_repair_is_active(d.repair));
+    ck_assert_int_eq(hf_repair_doubts(d.repair, &found), of[_i].is_named);
+    if (of[_i].is_named) ck_assert(found.constraint == 0 && found.limit.value > 4 && found.limit.value < 5);
+    d.r.evaluator.objectives = NULL;
+    required.has_no_rates = false;
     end();
 }
 END_TEST
@@ -279,6 +313,7 @@ Suite *suite_unit_repair(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, most_children_come_within_the_cap, 0, 2);
     tcase_add_loop_test(tests, a_cap_out_of_reach_is_known, 0, 2);
+    tcase_add_loop_test(tests, only_a_requirement_out_of_reach_is_named, 0, 4);
     tcase_add_test(tests, children_come_within_requirements);
     tcase_add_loop_test(tests, children_stay_where_no_limit_binds, 0, 2);
     tcase_add_loop_test(tests, some_nets_have_no_repair, 0, 3);
