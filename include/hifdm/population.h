@@ -109,6 +109,10 @@ double hf_population_merit(const hf_population *population, const hf_form_result
  * ordered by violation (Deb 2000). If two individuals are equal, the individual with the lower index is better. */
 bool hf_population_is_better(const hf_population *population, int a, int b);
 
+/* Returns the best individual of a ranked population. If no individual is feasible, returns the individual with the
+ * smallest violation. Returns -1 if no individual has a shape. */
+int hf_population_nearest(const hf_population *population);
+
 /* Returns the value within the bounds of design variable i_variable that is closest to value_N. */
 static inline double hf_population_clamp(const hf_population *population, int i_variable, double value_N)
 {

@@ -198,21 +198,6 @@ static hf_status store_best(hf_run *r, hf_summary *s, hf_messages *messages)
     return hf_store_shape(r->store, HF_STAGE_SEARCH, &r->problem.model, w, r->design, messages);
 }
 
-/* Returns the individual with the least violation, from which a refinement can find a feasible design, or -1 if none
- * has a shape. */
-static int least_violation(const hf_population *p)
-{
-    int nearest = -1;
-    double least = INFINITY;
-    for (int i = 0; i < p->n_individual; i++) {
-        double violation = hf_population_violation(&p->result[i]);
-        if (!(violation < least)) continue;
-        nearest = i;
-        least = violation;
-    }
-    return nearest;
-}
-
 hf_status hf_stage_search(hf_run *r, hf_summary *s, hf_messages *messages)
 {
     const hf_population *p = &r->optimiser.population;
@@ -224,7 +209,7 @@ hf_status hf_stage_search(hf_run *r, hf_summary *s, hf_messages *messages)
     HF_TRY(begin_generations(&q));
     if (hf_run_must_stop(r)) return HF_INTERRUPTED;
     HF_TRY(evolve(&q));
-    int start = p->best >= 0 ? p->best : least_violation(p);
+    int start = hf_population_nearest(p); /* a refinement can find a feasible design from it */
     if (p->best < 0 && (start < 0 || !hf_stage_wants_refine(r, s)))
         return hf_no_design_evolved(
             &r->problem, p, start < 0 ? NULL : p->design + (size_t)start * (size_t)p->n_variable, r->advice, messages);

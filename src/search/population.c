@@ -152,6 +152,15 @@ bool hf_population_is_better(const hf_population *population, int a, int b)
     return order ? order < 0 : a < b;
 }
 
+int hf_population_nearest(const hf_population *p)
+{
+    int best = p->best;
+    for (int i = 0; i < p->n_individual && p->best < 0; i++)
+        if (isfinite(hf_population_violation(&p->result[i])) && (best < 0 || hf_population_is_better(p, i, best)))
+            best = i;
+    return best;
+}
+
 void hf_population_note_trials(hf_population *population)
 {
     for (int i = 0; i < population->n_individual; i++) {

@@ -115,16 +115,6 @@ hf_status hf_repair_create(const hf_evaluator *v, const hf_population *p, hf_rep
 
 /* ---- the model of a generation ---- */
 
-/* Returns the best individual or, if none is feasible, the one nearest to the limits; -1 if none has a shape. */
-static int nearest(const hf_population *p)
-{
-    int best = p->best;
-    for (int i = 0; i < p->n_individual && p->best < 0; i++)
-        if (isfinite(hf_population_violation(&p->result[i])) && (best < 0 || hf_population_is_better(p, i, best)))
-            best = i;
-    return best;
-}
-
 /* Computes the rates of the values of all items at the shape in the workspace. Returns false if there are none. */
 static bool linearise(hf_repair *q)
 {
@@ -137,26 +127,10 @@ static bool linearise(hf_repair *q)
     return true;
 }
 
-/* Computes the steps from the base to the bounds. A class has the smallest steps of its design variables. */
-static void find_steps(hf_repair *q, const double *base)
-{
-    const hf_model *m = q->v.model;
-    for (int j = 0; j < q->slopes.n; j++) {
-        q->down[j] = -INFINITY;
-        q->up[j] = INFINITY;
-    }
-    for (int k = 0; k < m->n_variable; k++) {
-        int j = q->slopes.class_of_variable[k];
-        double weight = hf_symmetry_weight(m, q->initial, k);
-        q->down[j] = fmax(q->down[j], (q->lower[k] - base[k]) / weight);
-        q->up[j] = fmin(q->up[j], (q->upper[k] - base[k]) / weight);
-    }
-}
-
 void hf_repair_begin(hf_repair *q, const hf_population *now)
 {
     hf_form_result r;
-    int at = nearest(now), n_outside = 0;
+    int at = hf_population_nearest(now), n_outside = 0;
     size_t n = (size_t)q->slopes.n;
     q->base = NULL;
     for (int i = 0; i < now->n_individual; i++)
@@ -168,7 +142,6 @@ void hf_repair_begin(hf_repair *q, const hf_population *now)
     for (int i = 0; i < q->watch.n; i++)
         for (size_t j = 0; j < n; j++)
             q->rate[(size_t)i * n + j] = q->watch.rate[(1 + j) * (size_t)q->watch.ld + (size_t)i];
-    find_steps(q, base);
     q->base = base;
 }
 
@@ -206,6 +179,26 @@ static void look_at_cap(const hf_watch *t, int k, const double *value, broken *w
 
 /* ---- no design ---- */
 
+/* Computes the steps from the base to the bounds. A class has the smallest steps of its design variables. Returns false
+ * if linked variables have no common step. */
+static bool find_steps(const hf_repair *q)
+{
+    const hf_model *m = q->v.model;
+    for (int j = 0; j < q->slopes.n; j++) {
+        q->down[j] = -INFINITY;
+        q->up[j] = INFINITY;
+    }
+    for (int k = 0; k < m->n_variable; k++) {
+        int j = q->slopes.class_of_variable[k];
+        double weight = hf_symmetry_weight(m, q->initial, k);
+        q->down[j] = fmax(q->down[j], (q->lower[k] - q->base[k]) / weight);
+        q->up[j] = fmin(q->up[j], (q->upper[k] - q->base[k]) / weight);
+    }
+    for (int j = 0; j < q->slopes.n; j++)
+        if (!(q->down[j] <= q->up[j])) return false;
+    return true;
+}
+
 /* Returns the minimum of plus * value[a] + minus * value[b] over all designs within the bounds, by the model. */
 static double lowest(const hf_repair *q, double plus, int a, double minus, int b)
 {
@@ -241,20 +234,21 @@ static double lowest_ratio(const hf_repair *q, int high, int low, double cap)
 static bool doubts_cap(const hf_repair *q, int k, hf_repair_doubt *doubt)
 {
     const hf_watch *t = &q->watch;
-    hf_limit_held *limit = &doubt->limit;
-    limit->value = t->cap[k];
-    for (int high = 0; high < t->n; high++)
+    double ratio = t->cap[k];
+    for (int high = 0; high < t->n && isfinite(ratio); high++)
         for (int low = 0; low < t->n && t->item[high].ratio == k; low++) {
             const hf_watched *of = &t->item[low];
-            if (of->ratio != k || !(of->value > 0) || !(t->item[high].value > limit->value * of->value)) continue;
-            if (!is_above(q, high, low, limit->value)) continue;
-            limit->value = lowest_ratio(q, high, low, limit->value);
-            limit->cable = t->item[high].cable;
-            limit->other = of->cable;
+            if (of->ratio != k || !(of->value > 0) || !(t->item[high].value > ratio * of->value)) continue;
+            if (!is_above(q, high, low, ratio)) continue;
+            ratio = lowest_ratio(q, high, low, ratio);
+            doubt->limit = (hf_limit_held){.row = k == 0 && t->has_cap ? HF_LIMITS_CAP : 0,
+                                           .cable = t->item[high].cable,
+                                           .other = of->cable,
+                                           .attachment = -1,
+                                           .value = ratio,
+                                           .bound = t->cap[k]};
         }
-    limit->bound = t->cap[k];
-    limit->row = k == 0 && t->has_cap ? HF_LIMITS_CAP : 0;
-    return limit->value > t->cap[k];
+    return ratio > t->cap[k];
 }
 
 /* Looks at the bounds of a value. Rates of 0 are those of a slack cable, or of a net without a shape in a load case. */
@@ -266,24 +260,22 @@ static bool doubts_bound(const hf_repair *q, int i, hf_repair_doubt *doubt)
     if (is_unknown || !(least < most)) return false;
     bool is_above = isfinite(item->upper) && least > item->upper + margin;
     if (!is_above && !(isfinite(item->lower) && most < item->lower - margin)) return false;
-    doubt->limit.cable = item->cable;
-    doubt->limit.attachment = item->attachment;
-    doubt->limit.value = is_above ? least : most;
-    doubt->limit.bound = is_above ? item->upper : item->lower;
+    doubt->limit = (hf_limit_held){.cable = item->cable,
+                                   .other = -1,
+                                   .attachment = item->attachment,
+                                   .value = is_above ? least : most,
+                                   .bound = is_above ? item->upper : item->lower};
     doubt->constraint = item->constraint;
     return true;
 }
 
 bool hf_repair_doubts(const hf_repair *q, hf_repair_doubt *doubt)
 {
-    const hf_watch *t = &q->watch;
-    *doubt = (hf_repair_doubt){.limit = {.cable = -1, .other = -1, .attachment = -1}, .constraint = -1};
-    for (int j = 0; q->base && j < q->slopes.n; j++)
-        if (!(q->down[j] <= q->up[j])) return false; /* linked variables without a common step */
-    for (int k = 0; q->base && k < t->n_cap; k++)
-        if (isfinite(t->cap[k]) && doubts_cap(q, k, doubt)) return true;
-    doubt->limit.row = 0;
-    for (int i = 0; q->base && i < t->n; i++)
+    doubt->constraint = -1;
+    if (!q->base || !find_steps(q)) return false;
+    for (int k = 0; k < q->watch.n_cap; k++)
+        if (doubts_cap(q, k, doubt)) return true;
+    for (int i = 0; i < q->watch.n; i++)
         if (doubts_bound(q, i, doubt)) return true;
     return false;
 }

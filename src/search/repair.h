@@ -33,7 +33,8 @@ typedef struct {
 
 /* Looks for a limit that the model exceeds by more than 1 % at all designs within the bounds. Each limit is looked at
  * alone, and of a ratio each pair of tensions. Values that no variable changes are left out, because they may have no
- * derivatives. Returns false if there is no such limit, or no model. */
+ * derivatives. Must be called before another generation is proposed. Returns false if there is no such limit, or no
+ * model. */
 bool hf_repair_doubts(const hf_repair *repair, hf_repair_doubt *doubt);
 
 /* Moves individual i of `next`. Several threads may move different individuals at the same time. One individual in

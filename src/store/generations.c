@@ -327,15 +327,6 @@ static uint64_t hash_designs(const hf_population *population, const uint64_t *kn
     return all;
 }
 
-/* Returns the best individual. While none is feasible, this is the one with the smallest violation of its limits. */
-static int best_of(const hf_population *p)
-{
-    int best = p->best < 0 ? 0 : p->best;
-    for (int i = 1; p->best < 0 && i < p->n_individual; i++)
-        if (hf_population_is_better(p, i, best)) best = i;
-    return best;
-}
-
 /* Returns the row that the next design gets. */
 static int next_design_row(const hf_generations *g)
 {
@@ -366,7 +357,8 @@ static void add_designs(hf_generations *g, const double *design, const hf_popula
 static void add_part(hf_generations *g, const hf_population *population)
 {
     bool is_best = g->every == HF_GENERATIONS_BEST;
-    size_t first = is_best ? (size_t)best_of(population) : 0;
+    int nearest = is_best ? hf_population_nearest(population) : 0;
+    size_t first = nearest < 0 ? 0 : (size_t)nearest; /* of a generation without shapes the first one */
     if (!is_best && (g->n_stored + g->n_waiting) % g->every != 0) return;
     add_designs(g, population->design + first * (size_t)g->n_variable, NULL);
     for (int i = HF_ROW_EVALUATED; !is_series(i); i++)
