@@ -627,6 +627,12 @@ static void name_broken(hf_problem *p, const double *design, hf_form_result *r, 
     if (!*text) hf_problem_broken_requirement(p, text, 2 * HF_HELD_NAME_SIZE);
 }
 
+/* Returns what gives the designs more room. */
+static const char *what_to_widen(const hf_problem *p)
+{
+    return p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
+}
+
 /* Writes "Raise form.pretension_N to 12 N, " for the advice "raise form.pretension_N to 12 N", or "" for none. Returns
  * text. */
 static const char *begin_with(const char *advice, char text[HF_FEASIBLE_ADVICE_SIZE + 2])
@@ -641,7 +647,7 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const dou
 {
     const hf_optimize_settings *o = &p->settings.optimize;
     long above = of->n_evaluation_above_cap, shapeless = of->n_evaluation_infeasible - above;
-    const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
+    const char *wider = what_to_widen(p);
     const char *which = nearest ? "nearest" : "initial";
     hf_form_result shown;
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
@@ -674,7 +680,6 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const dou
 void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf_messages *messages)
 {
     const hf_limit_held *limit = &doubt->limit;
-    const char *wider = p->model.variable ? "the ranges and bounds of optimize.variables" : "optimize.range_N";
     char what[2 * HF_HELD_NAME_SIZE], name[HF_HELD_NAME_SIZE], bound[64] = "boundary_ratio_cap";
     if (doubt->constraint >= 0) {
         snprintf(what, sizeof what, "bound of %s is missed in all designs",
@@ -688,7 +693,7 @@ void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf
     hf_warning(messages,
                "optimize: hifdm expects no feasible design. By the derivatives at the nearest design of the first "
                "generation, the %s. The search goes on. Loosen this limit, or widen %s",
-               what, wider);
+               what, what_to_widen(p));
 }
 
 const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const double *design, hf_status status,
