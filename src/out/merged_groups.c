@@ -36,19 +36,19 @@ static standing standing_of(const hf_merged *m, int i)
     return (standing){hf_merged_is_done(m, i), of->n_failed, of->n_undecided, hf_merged_rank_value(m, i), i};
 }
 
-static int compare_values(const standing *a, const standing *b)
+/* Compares all but the values. */
+static int compare_verdicts(const standing *a, const standing *b)
 {
     if (a->is_done != b->is_done) return a->is_done ? -1 : 1;
     if (a->n_failed != b->n_failed) return a->n_failed < b->n_failed ? -1 : 1;
-    if (a->n_undecided != b->n_undecided) return a->n_undecided < b->n_undecided ? -1 : 1;
-    return (a->value > b->value) - (a->value < b->value);
+    return (a->n_undecided > b->n_undecided) - (a->n_undecided < b->n_undecided);
 }
 
 static int compare(const void *x, const void *y)
 {
     const standing *a = x, *b = y;
-    int by_value = compare_values(a, b);
-    return by_value ? by_value : (a->index > b->index) - (a->index < b->index);
+    int by_verdict = compare_verdicts(a, b), by_value = (a->value > b->value) - (a->value < b->value);
+    return by_verdict ? by_verdict : by_value ? by_value : (a->index > b->index) - (a->index < b->index);
 }
 
 /* Collects the points of a group that are done or have failed, sorted by the ranking. Returns their number. */
@@ -101,9 +101,7 @@ static double test_groups(const hf_merged *m, const hf_merged_group *g, const hf
     double *a = value, *b = value + g->n_run;
     for (int k = 0; k < n; k++) {
         const standing *now = &both[k], *before = now - 1;
-        if (k > 0 &&
-            (now->is_done != before->is_done || now->n_failed != before->n_failed ||
-             now->n_undecided != before->n_undecided || hf_merged_is_resolved(before->value, now->value, rounding)))
+        if (k > 0 && (compare_verdicts(before, now) || hf_merged_is_resolved(before->value, now->value, rounding)))
             class ++;
         if (now->index >= g->first && now->index < g->first + g->n)
             a[n_g++] = class;

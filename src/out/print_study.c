@@ -851,6 +851,21 @@ static void choose_rows(table *t, bool all)
     }
 }
 
+/* Prints the table of the points. */
+static void print_points(const table *t, hf_print_style style, FILE *f)
+{
+    if (t->n_column > t->n_axis) {
+        fputc('\n', f);
+        print_blocks(t, style, f);
+    }
+    if (t->is_short && t->n_required <= REQUIRED_MOST)
+        hf_print_line(f, "  %-13s all requirements; --verbose: other figures, such as psi", "columns");
+    else if (t->is_short)
+        hf_print_line(f, "  %-13s the %d tightest of %d requirements; --verbose: all, and other figures, such as psi",
+                      "columns", REQUIRED_MOST, t->n_required);
+    if (!t->is_all) hf_print_line(f, "  the %d best of %d points; --verbose: all", t->n_row, t->m->n);
+}
+
 void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
 {
     static table t;
@@ -868,17 +883,7 @@ void hf_print_study(const hf_merged *m, hf_print_style style, FILE *f)
     print_scatter(m, f);
     print_same(&t, f);
     print_failures(m, f);
-    bool has_points = !m->n_group || style.verbose;
-    if (t.n_column > t.n_axis && has_points) {
-        fputc('\n', f);
-        print_blocks(&t, style, f);
-    }
-    if (t.is_short && t.n_required <= REQUIRED_MOST && has_points)
-        hf_print_line(f, "  %-13s all requirements; --verbose: other figures, such as psi", "columns");
-    else if (t.is_short && has_points)
-        hf_print_line(f, "  %-13s the %d tightest of %d requirements; --verbose: all, and other figures, such as psi",
-                      "columns", REQUIRED_MOST, t.n_required);
-    if (!t.is_all && has_points) hf_print_line(f, "  the %d best of %d points; --verbose: all", t.n_row, m->n);
+    if (!m->n_group || style.verbose) print_points(&t, style, f);
     if (m->n_group) print_groups(&t, style, f);
     hf_print_line(f, "  %-13s a page to look at: hifdm report %s", "more", m->path);
 }
