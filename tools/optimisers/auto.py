@@ -16,11 +16,9 @@ best.csv  per net the lowest psi known, here or in the optimisers.csv and best.c
 
 import argparse
 import csv
-import json
 import statistics
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import run
@@ -44,21 +42,10 @@ def problems():
             "--set", f"scene.import.cables={LIMITS}triangles_{net}_cables.csv"]
 
 
-def result_of(o, case, arguments, method, seed):
-    """Returns the JSON object of a run with this method, or None if it found no design, and what it said."""
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([o.program, "run", case, "-o", folder + "/r.h5", "--json", "--threads", "1", *arguments,
-                               "--set", "optimize.method=" + method, "--seed", str(seed)], text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    if done.returncode not in (0, 3):
-        raise RuntimeError(done.stderr)
-    return (json.loads(done.stdout) if done.returncode == 0 else None), done.stderr
-
-
 def solve(o, case, arguments, method, seed):
     """Returns psi (m), form-findings and time without storing (s) of a run with this method, and its number of
     variables."""
-    of = result_of(o, case, arguments, method, seed)[0]
+    of = run.result_of(o, case, arguments, method, seed)[0]
     search = of.get("search") or {"evaluations": 0, "cpu_s": 0, "store_cpu_s": 0, "independent_variables": 0}
     return (of["refine"]["psi_m"], of["refine"]["evaluations"] + search["evaluations"],
             of["refine"]["wall_s"] + search["cpu_s"] - search["store_cpu_s"], search["independent_variables"])

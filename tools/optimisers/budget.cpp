@@ -218,20 +218,11 @@ double time_of_design()
 
 int main(int argc, char **argv)
 {
-    std::vector<const char *> set;
-    hf_messages said{};
     if (argc < 5) {
         std::fprintf(stderr, "usage: budget CASE SEEDS SOLVES SECONDS [--set KEY=VALUE]...\n");
         return 2;
     }
-    for (int i = 5; i + 1 < argc; i += 2)
-        set.push_back(argv[i + 1]);
-    hf_status status = hf_problem_open(argv[1], set.data(), (int)set.size(), 1, &problem, &said);
-    if (status != HF_OK) {
-        std::fprintf(stderr, "%s%s: %s\n", said.text ? said.text : "", argv[1], hf_status_text(status));
-        return hf_status_exit_code(status);
-    }
-    hf_batch_share(&problem.batch, problem.initial);
+    if (int code = open_problem(argc, argv, 5)) return code;
     take_seed(1);
     const double designs = std::atof(argv[4]) / time_of_design();
     for (unsigned seed = 1; seed <= (unsigned)std::atoi(argv[2]); seed++) {
@@ -247,6 +238,5 @@ int main(int argc, char **argv)
         }
     }
     hf_problem_free(&problem);
-    hf_messages_free(&said);
     return 0;
 }

@@ -11,7 +11,6 @@ import sys
 from pathlib import Path
 
 import run
-from auto import result_of
 from running_times import write_rows
 
 PARTS = 0.99, 0.97, 0.95, 0.92, 0.89, 0.86, 0.83, 0.8, 0.75, 0.7
@@ -26,13 +25,13 @@ def main():
     nets = [problem for problem in run.problems() if "cap" not in problem[0]]
     rows = []
     for net, case, arguments in nets:
-        ratio = result_of(o, case, [*arguments, "--set", "optimize.generations=1"], "ga", 1)[0]["form"][
+        ratio = run.result_of(o, case, [*arguments, "--set", "optimize.generations=1"], "ga", 1)[0]["form"][
             "boundary_tension_ratio"]
         for part in PARTS:
             cap = max(1.001, part * ratio)
             limits = [*arguments, "--set", f"optimize.boundary_ratio_cap={cap:.6g}", "--set",
                       "optimize.generations=100"]
-            result, said = result_of(o, case, limits, "ga+lm", 1)
+            result, said = run.result_of(o, case, limits, "ga+lm", 1)
             rows.append([net, f"{cap:.4g}", int("expects no feasible design" in said), int(result is not None)])
     write_rows(o.out / "caps.csv", HEAD, rows, [net[0] for net in nets])
     missed = [row for row in rows if not row[3]]

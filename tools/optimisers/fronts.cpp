@@ -141,8 +141,6 @@ void evolve_pagmo(bool by_chain, unsigned seed)
 
 int main(int argc, char **argv)
 {
-    std::vector<const char *> set;
-    hf_messages said{};
     if (argc < 4) {
         std::fprintf(stderr, "usage: fronts CASE SEEDS EVALUATIONS[,EVALUATIONS]... [--set KEY=VALUE]...\n");
         return 2;
@@ -153,15 +151,11 @@ int main(int argc, char **argv)
         if (end == text || budgets.back() < population) return 2;
         text = end + (*end == ',');
     }
-    for (int i = 4; i + 1 < argc; i += 2)
-        set.push_back(argv[i + 1]);
-    hf_status status = hf_problem_open(argv[1], set.data(), (int)set.size(), 1, &problem, &said);
-    if (status != HF_OK || objectives() == 0) {
-        std::fprintf(stderr, "%s%s: %s\n", said.text ? said.text : "", argv[1],
-                     status != HF_OK ? hf_status_text(status) : "has no optimize.front");
-        return status != HF_OK ? hf_status_exit_code(status) : 2;
+    if (int code = open_problem(argc, argv, 4)) return code;
+    if (objectives() == 0) {
+        std::fprintf(stderr, "%s: has no optimize.front\n", argv[1]);
+        return 2;
     }
-    hf_batch_share(&problem.batch, problem.initial);
     take_bounds(ours(1).o.population);
     for (unsigned seed = 1; seed <= (unsigned)std::atoi(argv[2]); seed++) {
         evolve(seed);
@@ -169,6 +163,5 @@ int main(int argc, char **argv)
         if (variables(true) < genes()) evolve_pagmo(true, seed);
     }
     hf_problem_free(&problem);
-    hf_messages_free(&said);
     return 0;
 }

@@ -350,21 +350,12 @@ void serve()
 int main(int argc, char **argv)
 {
     bool serves = argc > 2 && !std::strcmp(argv[2], "serve");
-    std::vector<const char *> set;
-    hf_messages said{};
     if (argc < 4 && !serves) {
         std::fprintf(stderr, "usage: peers CASE SEEDS EVALUATIONS [--set KEY=VALUE]...\n"
                              "       peers CASE serve [--set KEY=VALUE]...\n");
         return 2;
     }
-    for (int i = serves ? 3 : 4; i + 1 < argc; i += 2)
-        set.push_back(argv[i + 1]);
-    hf_status status = hf_problem_open(argv[1], set.data(), (int)set.size(), 1, &problem, &said);
-    if (status != HF_OK) {
-        std::fprintf(stderr, "%s%s: %s\n", said.text ? said.text : "", argv[1], hf_status_text(status));
-        return hf_status_exit_code(status);
-    }
-    hf_batch_share(&problem.batch, problem.initial);
+    if (int code = open_problem(argc, argv, serves ? 3 : 4)) return code;
     take_bounds(ours(1).o.population);
     if (serves) {
         serve();
@@ -372,6 +363,5 @@ int main(int argc, char **argv)
         run_all((unsigned)std::atoi(argv[2]), std::atol(argv[3]));
     }
     hf_problem_free(&problem);
-    hf_messages_free(&said);
     return 0;
 }

@@ -131,14 +131,21 @@ def measure(o, case, arguments):
     return found, sizes
 
 
+def result_of(o, case, arguments, method, seed):
+    """Returns the JSON object of a run with this method, or None if it found no design, and what it said."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([o.program, "run", case, "-o", folder + "/r.h5", "--json", "--threads", "1", *arguments,
+                               "--set", "optimize.method=" + method, "--seed", str(seed)], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    if done.returncode not in (0, 3):
+        raise RuntimeError(done.stderr)
+    return (json.loads(done.stdout) if done.returncode == 0 else None), done.stderr
+
+
 def refine(o, case, arguments, method, seed):
     """Returns psi and form-findings of Levenberg-Marquardt in `hifdm run` with this method, and psi of the initial
     design."""
-    with tempfile.TemporaryDirectory() as folder:
-        run = subprocess.run([o.program, "run", case, "-o", folder + "/r.h5", "--json", *arguments, "--set",
-                              "optimize.method=" + method, "--seed", str(seed)], text=True, stdout=subprocess.PIPE,
-                             stderr=subprocess.DEVNULL)
-    result = json.loads(run.stdout) if run.returncode == 0 else {}
+    result = result_of(o, case, arguments, method, seed)[0] or {}
     initial = result.get("form", {}).get("psi_m", math.nan)
     refined = result.get("refine")
     return (refined["psi_m"], refined["evaluations"], initial) if refined and refined["psi_m"] else \

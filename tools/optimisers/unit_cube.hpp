@@ -6,6 +6,7 @@
 #include <hifdm/hifdm.h>
 
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 namespace {
@@ -21,6 +22,23 @@ int genes()
 int variables(bool by_chain)
 {
     return by_chain ? problem.model.n_variable_group : genes();
+}
+
+/* Opens the case argv[1] with the overrides of its options --set, which begin at argv[first], on one thread. Returns 0,
+ * or the exit status after a message. */
+int open_problem(int argc, char **argv, int first)
+{
+    std::vector<const char *> set;
+    hf_messages said{};
+    for (int i = first; i + 1 < argc; i += 2)
+        set.push_back(argv[i + 1]);
+    hf_status status = hf_problem_open(argv[1], set.data(), (int)set.size(), 1, &problem, &said);
+    if (status == HF_OK)
+        hf_batch_share(&problem.batch, problem.initial);
+    else
+        std::fprintf(stderr, "%s%s: %s\n", said.text ? said.text : "", argv[1], hf_status_text(status));
+    hf_messages_free(&said);
+    return status == HF_OK ? 0 : hf_status_exit_code(status);
 }
 
 void take_bounds(const hf_population &p)

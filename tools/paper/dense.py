@@ -24,9 +24,10 @@ import numpy as np
 
 from kept import export, on_truss
 from runs import DENSE_CSV, DENSE_TRUSS_CSV, NET, TRUSS, Runs, words
-from search import KEY, TRUSS_PSI_M, scene, solve
+from search import KEY, PSI_M, RATIO, TRUSS_PSI_M, scene, solve
 
-PSI_M, RATIO, NEAR = 6.6e-3, 4.8445, 0.002  # what focal length and scallop are solved for, and how closely
+NEAR = 0.002  # how closely focal length and scallop are solved for PSI_M and RATIO
+STOP = {"method": "hifdm", "pretension_N": 10, "stop": "rms_change"}  # form-finding as in the paper
 FOCAL_M, SCALLOP = (12.0, 500.0), (0.003, 0.16)
 EARLY = 1.0025  # a stop with a larger inner ratio is at an earlier turning point of psi, on another branch
 ASIDE = ((1.02, 1.0), (0.96, 1.03), (1.1, 0.97), (0.88, 1.06), (1.25, 0.94), (0.75, 1.1))  # from an early stop
@@ -154,10 +155,9 @@ class Search:
         if os.path.exists(self.path):
             with open(self.path) as file:
                 self.rows = json.load(file)
-        stop = {"method": "hifdm", "pretension_N": 10, "stop": "rms_change"}
-        self.form = runs.case("dense-form", NET, drop=["optimize"], form=stop)
-        self.anew = runs.case("dense-anew", NET, form=stop, optimize=GA | {"range_N": 1e-9, "generations": 1})
-        self.ga = runs.case("dense-ga", NET, form=stop, optimize=GA)
+        self.form = runs.case("dense-form", NET, drop=["optimize"], form=STOP)
+        self.anew = runs.case("dense-anew", NET, form=STOP, optimize=GA | {"range_N": 1e-9, "generations": 1})
+        self.ga = runs.case("dense-ga", NET, form=STOP, optimize=GA)
 
     def save(self):
         with open(self.path + ".part", "w") as file:
@@ -262,8 +262,7 @@ class Search:
     def formed_on_truss(self, row):
         """Returns the figures of a form-finding on the truss, with Young's modulus nearest to 8.38 mm."""
         E = np.geomspace(2e8, 2e11, 61)
-        form = {"method": "hifdm", "pretension_N": 10, "stop": "rms_change"}
-        case = self.runs.case("dense-truss", TRUSS, form=form)
+        case = self.runs.case("dense-truss", TRUSS, form=STOP)
         more = {"truss.match_tolerance_m": f"{1.5 * row['tie_m'] + 0.01:.3g}", "coupling.scheme": "plain",
                 "coupling.tof_m": "1e-3"}
         table = solve(self.runs, "dense-formed", case, [self.scene(row) | more | {"truss.E_Pa": f"{e:.4g}"} for e in E])
