@@ -33,6 +33,7 @@
 #define DAMPING_MOST 1e12   /* stalled: with more damping, a step is too short to change psi [1e4 to 1e24] */
 #define CORRECTIONS_MAX 4   /* corrections of a step that breaks limits [40 passes; with 1, runs stall at a cap] */
 #define DAMPING_OF_WAY 1e3  /* damping on the way into the limits, if less damping fails [1e8 passes; 1 fails] */
+#define WAY_GROWTH 10       /* then a step that fails raises the damping by this factor [3 and 100 pass] */
 #define WAY_LEAST 1e-3      /* minimum part of the way into the limits that a step takes [1e-2; 1e-6] */
 /* The way ends outside if as many steps together come less than WAY_GAIN nearer: what is broken cannot be met. Steps
  * that fail halve the way and raise the damping, so there must be more than about 20. A point of a front may be found
@@ -378,8 +379,8 @@ static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
 /* Moves a start from outside into the limits. Each step aims at a part (`way`) of the way to the linear limits. Limits
  * are not linear: if the step does not come nearer to them, the next one takes half of that part, otherwise twice. Near
  * a curved limit, the part of a step that lowers the merit leads away from the limit. If small parts of the way do not
- * succeed, more damping therefore reduces that part of the step. Returns HF_OK, also if it stays outside, or the status
- * of the failure. */
+ * succeed, more and more damping therefore reduces that part of the step. Returns HF_OK, also if it stays outside, or
+ * the status of the failure. */
 static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_result *r)
 {
     double gain;
@@ -388,8 +389,8 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
         HF_TRY(scale_into(p, r));
         HF_TRY(tell_watcher(p, r, max_iterations));
     }
-    while (p->is_outside && (p->way > WAY_LEAST || p->damping < DAMPING_OF_WAY) &&
-           (p->front || p->settled_steps < WAY_STEPS) && r->iterations < max_iterations) {
+    while (p->is_outside && p->damping <= DAMPING_MOST && (p->front || p->settled_steps < WAY_STEPS) &&
+           r->iterations < max_iterations) {
         if (p->way <= WAY_LEAST) {
             p->damping = DAMPING_OF_WAY;
             p->way = 1;
@@ -402,7 +403,12 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
         double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;
         bool is_inside = status == HF_OK && hf_watch_keeps(&p->watch, p->w),
              is_nearer = is_inside || after < p->violation;
-        p->way = is_nearer ? fmin(1, 2 * p->way) : p->way / 2;
+        if (is_nearer)
+            p->way = fmin(1, 2 * p->way);
+        else if (p->damping < DAMPING_OF_WAY)
+            p->way /= 2;
+        else
+            p->damping *= WAY_GROWTH;
         if (is_nearer) {
             p->violation = after;
             hf_refine_keep(p);

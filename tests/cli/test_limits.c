@@ -126,6 +126,17 @@ START_TEST(a_start_beyond_its_displacements_is_led_in)
 }
 END_TEST
 
+/* The base of 331 ties is 0.1 % above the cap. With little damping, psi falls so much that no step comes nearer to it. */
+START_TEST(a_start_just_above_a_cap_of_many_cables_is_led_in)
+{
+    const char *out = temp("r.h5");
+    HIFDM(0, "run", keep(source_path("tools/optimisers/tie.yaml")), "-o", out, "--quiet", "--set", "optimize.method=lm",
+          "--set", "optimize.refine_steps=20");
+    EXPECT(out, "--", "a['refine'].attrs['boundary_tension_ratio'] <= 10 * (1 + 1e-9)",
+           "a['refine'].attrs['psi_m'] < 0.26");
+}
+END_TEST
+
 /* Evenness has no value where all tensions are zero, and a weight without end none at all: no design at all. */
 START_TEST(a_merit_without_a_value_is_no_merit)
 {
@@ -281,6 +292,7 @@ Suite *suite_cli_limits(void)
     tcase_add_loop_test(tests, a_limit_out_of_reach_is_named_at_once, 0, 5);
     tcase_add_test(tests, a_displacement_of_zero_holds_nothing);
     tcase_add_loop_test(tests, a_start_beyond_its_displacements_is_led_in, 0, 4);
+    tcase_add_test(tests, a_start_just_above_a_cap_of_many_cables_is_led_in);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
     tcase_add_test(tests, scipy_gains_nothing_on_objectives);
