@@ -113,6 +113,9 @@ bool hf_population_is_better(const hf_population *population, int a, int b);
  * smallest violation. Returns -1 if no individual has a shape. */
 int hf_population_nearest(const hf_population *population);
 
+/* Returns true if all designs that were evaluated last are within the limits or have no shape. */
+bool hf_population_meets_limits(const hf_population *population);
+
 /* Returns the value within the bounds of design variable i_variable that is closest to value_N. */
 static inline double hf_population_clamp(const hf_population *population, int i_variable, double value_N)
 {

@@ -48,6 +48,7 @@ void hf_breeding_move_along(const hf_breeding *g, const hf_population *p, const 
     double step = move->step_max * hf_random_uniform(random);
     double share = hf_power_of_two(-move->share_octaves * hf_random_uniform(random));
     bool by_chain = hf_random_uniform(random) < move->by_chain;
+    if (move->by_all > 0 && hf_random_uniform(random) < move->by_all) share = 1;
     for (int j = 0; j < g->model->n_variable_group && by_chain; j++)
         draw[j] = hf_random_uniform(random);
     for (int k = 0; k < p->n_variable; k++) {
@@ -63,6 +64,13 @@ static double mutation_step(double rate, hf_random *random)
     if (hf_random_uniform(random) >= rate) return 0;
     double sign = hf_random_uniform(random) < 0.5 ? -1 : 1;
     return sign * hf_power_of_two(-MUTATION_OCTAVES * hf_random_uniform(random));
+}
+
+void hf_breeding_shift(const hf_population *p, double rate, double *child, hf_random *random)
+{
+    double step = mutation_step(rate, random);
+    for (int k = 0; k < p->n_variable && step != 0; k++)
+        child[k] = hf_population_clamp(p, k, child[k] + step * (p->upper[k] - p->lower[k]));
 }
 
 /* The cables of a chain mutate together. Unequal changes drag the nodes along the chain, and psi rises steeply.

@@ -1,5 +1,5 @@
 /* breeding - makes designs from other designs. Its operators are the first generation, crossover along the difference
- * of two designs, and mutation. The genetic algorithms of METHOD section 7 differ in how they select parents and
+ * of two designs, and mutations. The genetic algorithms of METHOD section 7 differ in how they select parents and
  * survivors.
  *
  * An operator changes whole chains of boundary cables, or single genes. Crossover and mutation do not make linked genes
@@ -22,6 +22,7 @@ typedef struct {
     double step_max;      /* the step is uniform between 0 and this many differences */
     double share_octaves; /* the share of chains or genes that move is log-uniform between 2^-share_octaves and 1 */
     double by_chain;      /* probability that whole chains move, instead of single genes */
+    double by_all;        /* probability that all genes move */
 } hf_breeding_move;
 
 /* Returns the scratch of individual i, [n_variable_group]: one number for each chain. */
@@ -36,6 +37,9 @@ void hf_breeding_first(void *breeding, hf_population *population);
  * random share of its chains or genes moves, by a random number of differences from 0 to step_max. */
 void hf_breeding_move_along(const hf_breeding *breeding, const hf_population *population, const hf_breeding_move *move,
                             const double *from, const double *to, int i, double *child, hf_random *random);
+
+/* Moves all genes of child [n_variable] by one step in parts of the widths of their bounds, with probability `rate`. */
+void hf_breeding_shift(const hf_population *population, double rate, double *child, hf_random *random);
 
 /* Mutates child [n_variable] of individual i. Each chain takes a step with probability `rate`. In addition, `single`
  * genes on average take a step of their own. */

@@ -7,9 +7,9 @@
  * the breeder GA (Muehlenbein & Schlierkamp-Voosen 1993), which changes chains of boundary cables
  * (model->variable_group) and single cables. Their rates are those of Srinivas & Patnaik (1994) for minimisation.
  *
- * Variation `difference`: a crossover moves an elite along the difference of two parents, as in differential evolution
- * (Storn & Price 1997). A child replaces the individual of the same index unless the child is worse
- * (hf_population_keep_better).
+ * Variation `difference`: a crossover moves an elite, or the mean of the best individuals, along the difference of two
+ * parents, as in differential evolution (Storn & Price 1997). A child replaces the individual of the same index unless
+ * the child is worse (hf_population_keep_better).
  *
  * Variation `chain`: a crossover is an intermediate recombination. The children replace the whole generation except the
  * elites.
@@ -28,6 +28,12 @@
  * lists the results of other constants. */
 static const hf_breeding_move crossover = {.step_max = 2.0, .share_octaves = 2.3, .by_chain = 0.6};
 #define SINGLES 10.0 /* single genes mutate this many times as often as in the variation `chain` */
+#define LEADERS 3    /* individuals whose mean is the centre of the population */
+#define CENTRED 0.7  /* probability that a crossover moves the centre, instead of an elite */
+#define SHIFTED 0.05 /* probability that a mutation moves all genes by one step */
+/* Probability that a crossover moves all genes while limits bind. At several limits, a design often becomes better only
+ * if all values at the limits change together. */
+#define MOVED_AT_LIMITS 0.5
 /* Intermediate recombination draws one number per chain, which reaches this far beyond both parents. So recombination
  * alone does not shrink the spread of the population. The proposed designs depend on this constant. The test
  * test_optimiser_ga passes with 0 and with 0.75. */
@@ -43,17 +49,23 @@ typedef struct {
     /* Shared by the children of a generation; `begin` computes it before the first child. */
     double *fitness; /* [n_individual] */
     double total_fitness, best_merit, mean_merit;
-    int *elite;           /* [elites], indices of the best individuals, best first */
+    int *elite; /* [n_listed], indices of the best individuals, best first */
+    int n_listed;
+    double *centre; /* [n_variable], mean of the best individuals */
+    hf_breeding_move move;
     unsigned char *taken; /* [n_individual], scratch */
 } breeder;
 
 static hf_status create(const hf_optimize_settings *s, const hf_model *m, void **state)
 {
-    breeder g = {.breeding = {.settings = s, .model = m}}, *itself;
+    breeder g = {.breeding = {.settings = s, .model = m}, .move = crossover}, *itself;
     size_t n = (size_t)s->population;
+    g.n_listed = s->elites > LEADERS ? s->elites : LEADERS;
+    if (g.n_listed > s->population) g.n_listed = s->population;
     /* The struct itself comes first: its address is then that of the block, and free(state) frees everything. */
     HF_TRY(HF_ARENA_ARRAYS(state, HF_ARRAY(itself, 1), HF_ARRAY(g.breeding.draw, n * (size_t)m->n_variable_group),
-                           HF_ARRAY(g.fitness, n), HF_ARRAY(g.taken, n), HF_ARRAY(g.elite, s->elites)));
+                           HF_ARRAY(g.fitness, n), HF_ARRAY(g.taken, n), HF_ARRAY(g.elite, g.n_listed),
+                           HF_ARRAY(g.centre, m->n_variable)));
     *itself = g;
     return HF_OK;
 }
@@ -132,16 +144,17 @@ static void recombine(const breeder *g, const hf_population *p, const double *a,
     }
 }
 
-/* Makes child [n_variable] of individual i: an elite, moved along the difference from the worse of the parents a and b
- * to the better one. */
-static void move_elite(const breeder *g, const hf_population *p, int a, int b, int i, double *child, hf_random *random)
+/* Makes child [n_variable] of individual i: the centre or an elite, moved along the difference from the worse of the
+ * parents a and b to the better one. */
+static void move_leader(const breeder *g, const hf_population *p, int a, int b, int i, double *child, hf_random *random)
 {
     size_t n = (size_t)p->n_variable;
     int better = hf_population_is_better(p, a, b) ? a : b, worse = a + b - better;
     const double *to = p->design + (size_t)better * n, *from = p->design + (size_t)worse * n;
-    int leader = g->elite[(int)(hf_random_uniform(random) * g->breeding.settings->elites)];
-    memcpy(child, p->design + (size_t)leader * n, n * sizeof *child);
-    hf_breeding_move_along(&g->breeding, p, &crossover, from, to, i, child, random);
+    int elite = g->elite[(int)(hf_random_uniform(random) * g->breeding.settings->elites)];
+    bool is_centred = hf_random_uniform(random) < CENTRED;
+    memcpy(child, is_centred ? g->centre : p->design + (size_t)elite * n, n * sizeof *child);
+    hf_breeding_move_along(&g->breeding, p, &g->move, from, to, i, child, random);
 }
 
 /* Makes one child with random numbers of its own stream. */
@@ -167,7 +180,8 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
     else if (by_chain)
         recombine(g, now, mother, father, hf_breeding_draws(&g->breeding, i), child, &random);
     else
-        move_elite(g, now, a, b, i, child, &random);
+        move_leader(g, now, a, b, i, child, &random);
+    if (!by_chain) hf_breeding_shift(now, SHIFTED, child, &random);
     hf_breeding_mutate(&g->breeding, now, pm, by_chain ? pm : SINGLES * pm, i, child, &random);
     hf_breeding_finish(&g->breeding, now, next, i, itself, pc, pm, a, b);
 }
@@ -178,13 +192,27 @@ static void breed(const breeder *g, const hf_population *now, hf_population *nex
 static void list_elites(const breeder *g, const hf_population *p)
 {
     memset(g->taken, 0, (size_t)p->n_individual);
-    for (int e = 0; e < g->breeding.settings->elites; e++) {
+    for (int e = 0; e < g->n_listed; e++) {
         int best = -1;
         for (int i = 0; i < p->n_individual; i++)
             if (!g->taken[i] && (best < 0 || hf_population_is_better(p, i, best))) best = i;
         g->taken[best] = 1;
         g->elite[e] = best;
     }
+}
+
+/* Computes the mean of the best individuals that can be parents, or copies the best one if there are none. */
+static void find_centre(const breeder *g, const hf_population *p)
+{
+    size_t n = (size_t)p->n_variable;
+    int leaders = 0;
+    while (leaders < LEADERS && leaders < g->n_listed && isfinite(merit_of(p, g->elite[leaders])))
+        leaders++;
+    if (leaders == 0) leaders = 1;
+    memset(g->centre, 0, n * sizeof *g->centre);
+    for (int e = 0; e < leaders; e++)
+        for (size_t k = 0; k < n; k++)
+            g->centre[k] += p->design[(size_t)g->elite[e] * n + k] / leaders;
 }
 
 /* Copies elite e to individual e of the next generation. */
@@ -201,6 +229,9 @@ static void begin(void *state, const hf_population *now)
     breeder *g = state;
     set_fitness(g, now);
     list_elites(g, now);
+    if (g->breeding.settings->variation == HF_VARIATION_CHAIN) return;
+    find_centre(g, now);
+    g->move.by_all = hf_population_meets_limits(now) ? 0 : MOVED_AT_LIMITS;
 }
 
 static void propose(void *state, const hf_population *now, hf_population *next, int i)

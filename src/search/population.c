@@ -161,6 +161,13 @@ int hf_population_nearest(const hf_population *p)
     return best;
 }
 
+bool hf_population_meets_limits(const hf_population *p)
+{
+    for (int i = 0; i < p->n_individual; i++)
+        if (p->trial_status[i] != HF_OK && hf_status_has_shape(p->trial_status[i])) return false;
+    return true;
+}
+
 void hf_population_note_trials(hf_population *population)
 {
     for (int i = 0; i < population->n_individual; i++) {

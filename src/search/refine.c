@@ -70,7 +70,8 @@
 #define NEWTON_STEPS 5
 #define CHORD_STEPS 4
 #define UNNOTICED 2e8
-#define MODEL_MAX 1e7 /* derivatives of positions that a search may keep: 80 MB */
+#define MODEL_GENERATIONS 3 /* generations whose time a model for repairs may take */
+#define MODEL_MAX 1e7       /* derivatives of positions that a search may keep: 80 MB */
 
 /* ---- what it costs ---- */
 
@@ -127,7 +128,8 @@ bool hf_refine_model_is_cheap(const hf_evaluator *v, int population)
     hf_evaluator of_search = *v;
     if (v->solver == HF_SOLVER_AUTO && hf_chord_applies(v)) of_search.solver = HF_SOLVER_CHORD;
     double newton, evaluation, model = count_model(&of_search, &newton, &evaluation);
-    return model <= evaluation * population && 3.0 * v->model->n_free * v->model->n_leader <= MODEL_MAX;
+    return model <= MODEL_GENERATIONS * evaluation * population &&
+           3.0 * v->model->n_free * v->model->n_leader <= MODEL_MAX;
 }
 
 int hf_refine_generations(const hf_evaluator *v, int population)

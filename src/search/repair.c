@@ -7,7 +7,6 @@
 #include "search/repair.h"
 
 #include "base/arena.h"
-#include "linalg/dot.h"
 #include "net/symmetry.h"
 #include "search/refine.h"
 #include "search/watch.h"
@@ -32,16 +31,18 @@
     X(double, width2, n, "square of the width of the bounds of each class")                                            \
     X(double, down, n, "step from the base to the lower bound of each class")                                          \
     X(double, up, n, "step from the base to its upper bound")                                                          \
-    X(double, rate, n_item *n, "[n_item][n] rates of the items")                                                       \
+    X(double, base_design, n_variable, "copy of the design of the model")                                              \
     X(double, constraint_rate, n_constraint *n, "[n_constraint][n] rates of the constraints by requirements")          \
-    X(double, step, n_child *n, "[n_child][n] scratch: step from the base, then the move")                             \
-    X(double, move, n_child *n, "[n_child][n] scratch: move by one limit")                                             \
-    X(double, value, n_child *n_item, "[n_child][n_item] scratch: predicted values")
+    X(double, weight, n_child *(1 + n), "[n_child][1 + n] scratch: 1, then the step from the base")                    \
+    X(double, normal, n_child *n, "[n_child][n] scratch: rates of a broken limit")                                     \
+    X(double, moved, n_child *n, "[n_child][n] scratch: sum of the moves")                                             \
+    X(double, value, n_child *ld, "[n_child][ld] scratch: predicted values")
 
 struct hf_repair {
     hf_evaluator v; /* without objectives, unless there are constraints by requirements */
     const double *lower, *upper, *initial;
-    const double *base; /* [n_variable] design of the model; NULL: there is no model */
+    const double *base; /* [n_variable] base_design, or NULL: there is no model */
+    bool has_model;     /* of base_design */
     hf_workspace w;
     hf_objectives_point point; /* not used without constraints */
     hf_sensitivity slopes;
@@ -69,7 +70,8 @@ static hf_status allocate(hf_repair *to, int n_individual)
     HF_TRY(hf_sensitivity_create(&to->v, &to->slopes));
     if (to->v.objectives) HF_TRY(hf_objectives_point_create(to->v.objectives, &to->point));
     HF_TRY(hf_watch_create(&to->v, &to->slopes, to->lower, to->upper, NULL, &to->watch));
-    size_t n = (size_t)to->slopes.n, n_item = (size_t)to->watch.n, n_child = (size_t)n_individual;
+    size_t n = (size_t)to->slopes.n, ld = (size_t)to->watch.ld, n_child = (size_t)n_individual;
+    size_t n_variable = (size_t)to->v.model->n_variable;
     size_t n_constraint = to->v.objectives ? (size_t)to->v.objectives->constraints->n : 0;
     HF_TRY(HF_ARENA_ARRAYS(&to->block, REPAIR_FIELDS(HF_ARENA_ITEM)));
     to->watch.constraint = to->point.constraint;
@@ -124,30 +126,36 @@ static bool linearise(hf_repair *q)
                                        q->constraint_rate) != HF_OK)
         return false;
     hf_watch_linearise(&q->watch, &q->slopes, &q->w);
+    for (int i = 0; i < q->watch.n; i++)
+        q->watch.rate[i] = q->watch.item[i].value;
     return true;
 }
 
 void hf_repair_begin(hf_repair *q, const hf_population *now)
 {
     hf_form_result r;
-    int at = hf_population_nearest(now), n_outside = 0;
-    size_t n = (size_t)q->slopes.n;
+    int at = hf_population_nearest(now);
     q->base = NULL;
-    for (int i = 0; i < now->n_individual; i++)
-        n_outside += now->trial_status[i] != HF_OK && hf_status_has_shape(now->trial_status[i]);
-    if (n_outside == 0 || at < 0) return;
-    const double *base = now->design + (size_t)at * (size_t)now->n_variable;
-    hf_evaluate(&q->v, base, &q->w, q->v.objectives ? &q->point : NULL, &r);
-    if (!hf_status_has_shape(r.status) || !linearise(q)) return;
-    for (int i = 0; i < q->watch.n; i++)
-        for (size_t j = 0; j < n; j++)
-            q->rate[(size_t)i * n + j] = q->watch.rate[(1 + j) * (size_t)q->watch.ld + (size_t)i];
-    q->base = base;
+    if (at < 0 || hf_population_meets_limits(now)) return;
+    const double *design = now->design + (size_t)at * (size_t)now->n_variable;
+    size_t bytes = (size_t)now->n_variable * sizeof *design;
+    if (!q->has_model || memcmp(q->base_design, design, bytes) != 0) {
+        hf_evaluate(&q->v, design, &q->w, q->v.objectives ? &q->point : NULL, &r);
+        q->has_model = hf_status_has_shape(r.status) && linearise(q);
+        memcpy(q->base_design, design, bytes);
+    }
+    if (q->has_model) q->base = q->base_design;
 }
 
 bool hf_repair_is_active(const hf_repair *q)
 {
     return q->base;
+}
+
+/* Returns the rates of an item by all variables, a stride of watch.ld apart. */
+static const double *rates_of(const hf_repair *q, int item)
+{
+    return q->watch.rate + q->watch.ld + item;
 }
 
 /* ---- limits ---- */
@@ -202,11 +210,11 @@ static bool find_steps(const hf_repair *q)
 /* Returns the minimum of plus * value[a] + minus * value[b] over all designs within the bounds, by the model. */
 static double lowest(const hf_repair *q, double plus, int a, double minus, int b)
 {
-    size_t n = (size_t)q->slopes.n;
-    const double *of_a = q->rate + (size_t)a * n, *of_b = q->rate + (size_t)b * n;
+    size_t n = (size_t)q->slopes.n, ld = (size_t)q->watch.ld;
+    const double *of_a = rates_of(q, a), *of_b = rates_of(q, b);
     double sum = plus * q->watch.item[a].value + minus * q->watch.item[b].value;
     for (size_t j = 0; j < n; j++) {
-        double rate = plus * of_a[j] + minus * of_b[j];
+        double rate = plus * of_a[j * ld] + minus * of_b[j * ld];
         if (rate != 0) sum += rate * (rate > 0 ? q->down[j] : q->up[j]);
     }
     return sum;
@@ -282,57 +290,56 @@ bool hf_repair_doubts(const hf_repair *q, hf_repair_doubt *doubt)
 
 /* ---- a child ---- */
 
-/* Writes the move that mirrors a child at a broken limit. Returns false if no variable changes the values. */
-static bool mirror(const hf_repair *q, const broken *limit, double *move)
+/* Adds the move that mirrors a child at a broken limit to its step and to `moved`. Returns false if no variable changes
+ * the values. */
+static bool mirror(const hf_repair *q, const broken *limit, double *normal, double *step, double *moved)
 {
-    size_t n = (size_t)q->slopes.n;
-    const double *rate = q->rate + (size_t)limit->item * n;
-    const double *other = limit->other < 0 ? rate : q->rate + (size_t)limit->other * n;
+    size_t n = (size_t)q->slopes.n, ld = (size_t)q->watch.ld;
+    const double *of_item = rates_of(q, limit->item),
+                 *of_other = limit->other < 0 ? of_item : rates_of(q, limit->other);
     double along = 0;
     for (size_t j = 0; j < n; j++) {
-        double normal = limit->plus * rate[j] + limit->minus * other[j];
-        move[j] = q->width2[j] * normal;
-        along += move[j] * normal;
+        normal[j] = limit->plus * of_item[j * ld] + limit->minus * of_other[j * ld];
+        along += q->width2[j] * normal[j] * normal[j];
     }
-    for (size_t j = 0; j < n; j++)
-        move[j] *= MIRROR * limit->by / along;
-    return along > 0 && isfinite(along);
+    if (!(along > 0 && isfinite(along))) return false;
+    for (size_t j = 0; j < n; j++) {
+        double move = MIRROR * limit->by / along * q->width2[j] * normal[j];
+        step[j] += move;
+        moved[j] += move;
+    }
+    return true;
 }
 
-/* Adds the change of each value by a step [n]. */
-static void predict(const hf_repair *q, const double *step, double *value)
+/* Finds the limit that a step from the base breaks most. Returns false if it breaks none. */
+static bool find_worst(const hf_repair *q, const double *weight, double *value, broken *worst)
 {
-    size_t n = (size_t)q->slopes.n;
-    for (int i = 0; i < q->watch.n; i++)
-        value[i] += hf_dot(n, q->rate + (size_t)i * n, step);
+    *worst = (broken){.part = ROUNDING, .item = -1};
+    hf_quadratic_combine(q->watch.ld, 1 + q->slopes.n, weight, q->watch.rate, value);
+    look_at_bounds(&q->watch, value, worst);
+    for (int k = 0; k < q->watch.n_cap; k++)
+        look_at_cap(&q->watch, k, value, worst);
+    return worst->item >= 0;
 }
 
 void hf_repair_child(const hf_repair *q, hf_population *next, int i)
 {
     const hf_model *m = q->v.model;
-    size_t n = (size_t)q->slopes.n, n_item = (size_t)q->watch.n;
-    double *child = next->design + (size_t)i * (size_t)next->n_variable, *value = q->value + (size_t)i * n_item;
-    double *step = q->step + (size_t)i * n, *move = q->move + (size_t)i * n;
+    size_t n = (size_t)q->slopes.n;
+    double *child = next->design + (size_t)i * (size_t)next->n_variable;
+    double *weight = q->weight + (size_t)i * (1 + n), *step = weight + 1, *moved = q->moved + (size_t)i * n;
+    double *value = q->value + (size_t)i * (size_t)q->watch.ld;
+    broken worst;
     if (!q->base || i % PROBES == 0) return;
+    weight[0] = 1;
     for (int k = 0; k < next->n_variable; k++)
         if (m->variable_leader[k] == k)
             step[q->slopes.class_of_variable[k]] = (child[k] - q->base[k]) / hf_symmetry_weight(m, q->initial, k);
-    for (size_t e = 0; e < n_item; e++)
-        value[e] = q->watch.item[e].value;
-    predict(q, step, value);
-    memset(step, 0, n * sizeof *step);
-    for (int pass = 0; pass < PASSES; pass++) {
-        broken worst = {.part = ROUNDING, .item = -1};
-        look_at_bounds(&q->watch, value, &worst);
-        for (int k = 0; k < q->watch.n_cap; k++)
-            look_at_cap(&q->watch, k, value, &worst);
-        if (worst.item < 0 || !mirror(q, &worst, move)) break;
-        predict(q, move, value);
-        for (size_t j = 0; j < n; j++)
-            step[j] += move[j];
-    }
+    memset(moved, 0, n * sizeof *moved);
+    for (int pass = 0; pass < PASSES && find_worst(q, weight, value, &worst); pass++)
+        if (!mirror(q, &worst, q->normal + (size_t)i * n, step, moved)) break;
     for (int k = 0; k < next->n_variable; k++) {
-        double by = hf_symmetry_weight(m, q->initial, k) * step[q->slopes.class_of_variable[k]];
+        double by = hf_symmetry_weight(m, q->initial, k) * moved[q->slopes.class_of_variable[k]];
         child[k] = hf_population_clamp(next, k, child[k] + by);
     }
     hf_population_link(next, m, child);

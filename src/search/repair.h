@@ -12,7 +12,7 @@
 typedef struct hf_repair hf_repair;
 
 /* Creates a repair for designs of this population. It borrows the evaluator and the bounds of the population. *repair
- * is NULL if there are no limits or no derivatives, or if a model would cost more than a generation. Returns HF_OK or
+ * is NULL if there are no limits or no derivatives, or if hf_refine_model_is_cheap returns false. Returns HF_OK or
  * HF_NO_MEMORY. */
 hf_status hf_repair_create(const hf_evaluator *evaluator, const hf_population *population, hf_repair **repair);
 void hf_repair_free(hf_repair *repair); /* `repair` may be NULL */

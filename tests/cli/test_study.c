@@ -506,7 +506,7 @@ START_TEST(replicates_show_the_scatter_of_the_search)
     HIFDM(0, "show", whole, "--json");
     const char *json = out_as("s.json");
     HIFDM(0, "show", whole);
-    OUT("\n  scatter       pretension 5 N and pretension 5.5 N ");
+    OUT("\n  scatter       pretension 5.5 N and pretension 5 N ");
     const char *shown = out_as("s.txt");
     HIFDM(0, "show", whole, "--verbose");
     OUT("  pretension  replicate  ");
@@ -518,7 +518,7 @@ START_TEST(replicates_show_the_scatter_of_the_search)
            "in " GROUPS "], np.quantile(" PSI ", (0, .25, .5, .75, 1), axis=1).T, rtol=1e-14, atol=0)",
            "[g['best'] for g in " GROUPS "] == [texts(a['points/id'])[6 * k + i] for k, i in enumerate(" PSI
            ".argmin(1))]",
-           "[g['rank'] for g in " GROUPS "] == (np.median(" PSI ", 1).argsort().argsort() + 1).tolist() == [1, 2, 3]",
+           "[g['rank'] for g in " GROUPS "] == (np.median(" PSI ", 1).argsort().argsort() + 1).tolist() == [2, 1, 3]",
            "[g['input'] for g in " GROUPS "] == [{'form.pretension_N': v} for v in (5, 5.5, 20)]",
            "[g['n'] for g in " GROUPS "] == [6, 6, 6]",
            "near(b['replicates']['differ_p'], __import__('scipy.stats').stats.mannwhitneyu(" PSI "[0], " PSI
@@ -543,14 +543,14 @@ START_TEST(show_of_what_is_no_result_says_what_to_do)
 }
 END_TEST
 
-/* With seed 2022 and cap 4.7, one step of the refinement leads to nothing better than the search has; with 4.9 it
+/* With seed 4 and cap 4.7, one step of the refinement leads to nothing better than the search has; with 4.9 it
  * does. */
 START_TEST(a_search_among_the_results_is_not_called_refinement)
 {
     const char *base = source_path("configs/chen2022.yaml"),
                *path = file_with("s.yaml", formatted("base: %s\nsweep:\n  optimize.boundary_ratio_cap: [4.7, 4.9]\n"
                                                      "  optimize.refine_steps: [1]\n  optimize.generations: [60]\n"
-                                                     "  optimize.seed: [2022]\n",
+                                                     "  optimize.seed: [4]\n",
                                                      base)),
                *merged = temp("m.h5"), *page = temp("m.html");
     HIFDM(0, "sweep", path, "--dir", temp("m.d"), "--quiet");

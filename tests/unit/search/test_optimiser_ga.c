@@ -339,6 +339,100 @@ START_TEST(nobody_gives_way_to_a_worse_child)
 }
 END_TEST
 
+/* Counts children of the second generations of 100 seeds. Nothing mutates, except all genes together. If `is_at_limit`,
+ * one individual is above a cap. */
+typedef struct {
+    int n, from_centre, from_elite, all_moved;
+} leaders;
+
+static leaders look_at_crossovers(bool is_at_limit)
+{
+    hf_optimize_settings s = by_difference();
+    leaders found = {0};
+    s.crossover_high = s.crossover_low = 1;
+    s.mutation_high = s.mutation_low = 0;
+    s.elites = 1;
+    for (s.seed = 1; s.seed <= 100; s.seed++) {
+        hf_optimiser ga = create(&s);
+        const hf_population *p = &ga.population, *before = &ga.next;
+        int best[3];
+        double centre[N_VARIABLE] = {0};
+        evaluate_pending(&ga);
+        if (is_at_limit) ga.population.result[7] = (hf_form_result){.status = HF_RATIO_CAP, .violation = 1};
+        hf_optimiser_tell(&ga);
+        for (int e = 0; e < 3; e++) {
+            best[e] = -1;
+            for (int i = 0; i < N; i++)
+                if ((e < 1 || i != best[0]) && (e < 2 || i != best[1]) &&
+                    (best[e] < 0 || hf_population_is_better(p, i, best[e])))
+                    best[e] = i;
+            for (int k = 0; k < N_VARIABLE; k++)
+                centre[k] += p->design[best[e] * N_VARIABLE + k] / 3;
+        }
+        ck_assert(hf_optimiser_next(&ga));
+        for (int i = 0; i < N; i++) {
+            const double *child = p->design + i * N_VARIABLE, *elite = before->design + best[0] * N_VARIABLE;
+            int n_centre = 0, n_elite = 0;
+            if (p->parent[2 * i] == p->parent[2 * i + 1]) continue; /* no crossover */
+            for (int k = 0; k < N_VARIABLE; k++) {
+                if (k == 3 || k == 5) continue; /* often at a bound */
+                n_centre += child[k] == centre[k];
+                n_elite += child[k] == elite[k];
+            }
+            found.n++;
+            found.from_centre += n_centre > 0;
+            found.from_elite += n_elite > 0;
+            found.all_moved += n_centre + n_elite == 0;
+        }
+        hf_optimiser_free(&ga);
+    }
+    return found;
+}
+
+/* A gene that a crossover does not move is that of the leader. */
+START_TEST(crossovers_begin_at_the_mean_of_the_best_or_at_an_elite)
+{
+    leaders inside = look_at_crossovers(false), at_limit = look_at_crossovers(true);
+    double part = (double)inside.from_centre / (inside.from_centre + inside.from_elite);
+    ck_assert_double_ge(part, 0.65); /* 0.7 of some 1400 */
+    ck_assert_double_le(part, 0.75);
+    ck_assert_double_ge(1.0 * at_limit.all_moved / at_limit.n, 0.5);
+    ck_assert_double_le(1.0 * inside.all_moved / inside.n, 0.35);
+}
+END_TEST
+
+/* Without crossover and other mutations, some children differ from their individual in all genes, by one part of the
+ * width of the bounds. */
+START_TEST(all_genes_may_take_one_step)
+{
+    hf_optimize_settings s = by_difference();
+    int n_moved = 0, n_child = 0;
+    s.crossover_high = s.crossover_low = s.mutation_high = s.mutation_low = 0;
+    for (s.seed = 1; s.seed <= 100; s.seed++) {
+        hf_optimiser ga = create(&s);
+        const hf_population *p = &ga.population;
+        evaluate_pending(&ga);
+        hf_optimiser_tell(&ga);
+        ck_assert(hf_optimiser_next(&ga));
+        for (int i = 0; i < N; i++) {
+            double part = 0;
+            for (int k = 0; k < N_VARIABLE && p->pending[i]; k++) {
+                double child = p->design[i * N_VARIABLE + k], was = ga.next.design[i * N_VARIABLE + k];
+                if (child == p->lower[k] || child == p->upper[k]) continue; /* clamped */
+                double step = (child - was) / (p->upper[k] - p->lower[k]);
+                if (part != 0) ck_assert_double_eq_tol(step, part, 1e-13);
+                part = step;
+            }
+            n_moved += p->pending[i];
+            n_child++;
+        }
+        hf_optimiser_free(&ga);
+    }
+    ck_assert_int_ge(n_moved, n_child * 35 / 1000); /* 5 % of 2000 */
+    ck_assert_int_le(n_moved, n_child * 65 / 1000);
+}
+END_TEST
+
 /* Of genes that want unequal steps within their groups, which no step of whole groups gives. */
 START_TEST(difference_gets_nearer_than_chain)
 {
@@ -433,6 +527,8 @@ Suite *suite_unit_optimiser_ga(void)
     tcase_add_test(tests, better_individuals_have_more_children);
     tcase_add_test(tests, worst_individual_keeps_its_floor);
     tcase_add_test(tests, nobody_gives_way_to_a_worse_child);
+    tcase_add_test(tests, crossovers_begin_at_the_mean_of_the_best_or_at_an_elite);
+    tcase_add_test(tests, all_genes_may_take_one_step);
     tcase_add_test(tests, difference_gets_nearer_than_chain);
     tcase_add_test(tests, a_population_outside_its_limits_finds_the_way_in);
     tcase_add_test(tests, search_ends_for_a_reason);
