@@ -2,8 +2,8 @@
 """Compares our genetic algorithm with other optimisers: `make bench-optimisers`.
 
 Ten nets were not used in choosing the settings of optimize.variation (METHOD section 7). The same nets follow with a
-cap on the ratio of their boundary tensions that binds, then configs/chen2022.yaml without and with a cap. All
-optimisers have the same number of evaluations and the same first population (peers.cpp). In addition to those of the
+cap on the ratio of their boundary tensions that binds, then configs/chen2022.yaml without and with a cap, and a tied
+net with 331 variables, whose cap binds as well. All optimisers have the same number of evaluations and the same first population (peers.cpp). In addition to those of the
 driver there are scipy's differential evolution, and Levenberg-Marquardt of `hifdm run`, whose evaluations are
 form-findings with derivatives. psi* of a net is the minimum that any optimiser has found. The script writes into --out:
 
@@ -84,6 +84,7 @@ def problems():
             [*changes, f"optimize.boundary_ratio_cap={cap}"]))
     yield "flagship", "configs/chen2022.yaml", []
     yield "flagship, cap 4.6", "configs/chen2022.yaml", ["--set", "optimize.boundary_ratio_cap=4.6"]
+    yield "331 ties, cap 10", "tools/optimisers/tie.yaml", []
 
 
 def ask(server, by_chain, n, values=b""):
