@@ -173,7 +173,7 @@ def net_notes(runs):
 1. If all cables have 10 N, edge cables and ties do not hold the pull of the triangles. The edge nodes then move onto
    supports, and hifdm refuses this net and the others of [search.md](search.md) as collapsed. The pictures show only
    the first step. The paper's net holds at equal tensions, so it has another edge.
-2. With other seeds the ratio is 4.87 to 5.33 at nearly the same psi. No net of
+2. With other seeds the ratio is 4.98 to 5.33 at nearly the same psi. No net of
    [search.md](search.md) has both 5.608 and 4.3 mm.
 3. At the paper's stop psi still drifts: the short edge ties converge slowly, and the rule stops after
    {stopped.get("form", "iterations")} iterations at {mm(stopped.get("form", "psi_m"))} mm, where equilibrium is
