@@ -62,8 +62,8 @@ double hf_refine_operations(const hf_evaluator *evaluator);
  * not depend on the machine. */
 bool hf_refine_is_cheap(const hf_evaluator *evaluator, long n_evaluation);
 
-/* Returns true if the derivatives of one shape take at most as many operations as three generations of a population, and
- * at most 80 MB. */
+/* Returns true if the derivatives of one shape take at most as many operations as three generations of a population,
+ * and at most 80 MB. */
 bool hf_refine_model_is_cheap(const hf_evaluator *evaluator, int population);
 
 /* Returns the number of generations of a population that take about as many operations as one run, at least 1. */

@@ -126,7 +126,7 @@ START_TEST(a_start_beyond_its_displacements_is_led_in)
 }
 END_TEST
 
-/* The base of 331 ties is 0.1 % above the cap. With little damping, psi falls so much that no step comes nearer to it. */
+/* The base of 331 ties is 0.1 % above the cap. With little damping, psi falls so much that no step comes nearer. */
 START_TEST(a_start_just_above_a_cap_of_many_cables_is_led_in)
 {
     const char *out = temp("r.h5");
