@@ -19,6 +19,7 @@
 
 #define SAME_RATIO 1e-6    /* relative difference up to which values count as equal */
 #define RESOLVED_M 1e-9    /* differences of lengths below this are rounding */
+#define ROUNDING 1e-12     /* part of psi by which an objective may differ from it through rounding */
 #define REACHED_RATIO 1e-9 /* rounding of an objective, relative to its value after form-finding */
 
 const char *hf_merged_stage_word(const hf_merged *m, hf_merged_stage stage)
@@ -257,8 +258,10 @@ static bool is_psi(const hf_merged *m, const hf_merged_figure *f)
 {
     const hf_merged_figure *psi = hf_merged_find(m, f->stage, "psi_m");
     if (!psi || strncmp(f->key, "objective_", 10) != 0 || strcmp(hf_ledger_unit(f->key), "m") != 0) return false;
-    for (int i = 0; i < m->n; i++)
-        if (hf_merged_is_done(m, i) && !(f->value.value[i] == psi->value.value[i])) return false;
+    for (int i = 0; i < m->n; i++) {
+        double value = f->value.value[i], of_psi = psi->value.value[i];
+        if (hf_merged_is_done(m, i) && !(fabs(value - of_psi) <= ROUNDING * of_psi)) return false;
+    }
     return true;
 }
 

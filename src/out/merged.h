@@ -22,7 +22,7 @@ typedef struct {
     char key[HF_OBJECTIVE_NAME_SIZE]; /* such as psi_m, objective_1_tension_edge or facet_half_path_rms_m */
     hf_series value;                  /* [n]; NaN where a point has no value */
     bool is_same; /* equal at all completed points up to rounding, or without a value at all of them */
-    bool is_psi;  /* an objective that equals psi of this stage at all points */
+    bool is_psi;  /* an objective that equals psi of this stage at all points, up to rounding */
 } hf_merged_figure;
 
 /* What a point has to meet: the rows of `requirements` with a verdict. Points rank by the

@@ -482,7 +482,7 @@ START_TEST(replicates_show_the_scatter_of_the_search)
     const char *path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5, 5.5, 20]\n"),
                *whole = temp("whole.h5"), *shards = temp("shards.h5"), *killed = temp("killed.h5"),
                *page = temp("s.html");
-    file_with("base.yaml", NET "optimize: {variables: [{set: all, vary: force_density, range: 50 %}], population: 8, "
+    file_with("base.yaml", NET "optimize: {variables: [{set: all, vary: force_density, range: 20 %}], population: 8, "
                                "generations: 30, elites: 2, refine: false, objective: [{figure: psi}]}\n");
     HIFDM(0, "sweep", path, "--dir", temp("whole.d"), "--threads", "1", "--quiet");
     path = file_with("s.yaml", "base: base.yaml\nsweep:\n  form.pretension_N: [5, 5.5, 20]\n  replicates: 6\n");
