@@ -161,10 +161,16 @@ int hf_population_nearest(const hf_population *p)
     return best;
 }
 
+/* Returns true if the last evaluation of individual i gave a shape outside the limits. */
+static bool was_outside(const hf_population *p, int i)
+{
+    return p->trial_status[i] != HF_OK && hf_status_has_shape(p->trial_status[i]);
+}
+
 bool hf_population_meets_limits(const hf_population *p)
 {
     for (int i = 0; i < p->n_individual; i++)
-        if (p->trial_status[i] != HF_OK && hf_status_has_shape(p->trial_status[i])) return false;
+        if (was_outside(p, i)) return false;
     return true;
 }
 
@@ -221,8 +227,7 @@ void hf_population_rank(const hf_optimize_settings *s, hf_population *p)
         bool is_infeasible = r->status != HF_OK;
         p->n_evaluation += p->pending[i];
         p->n_evaluation_infeasible += p->pending[i] && p->trial_status[i] != HF_OK;
-        p->n_evaluation_above_cap +=
-            p->pending[i] && p->trial_status[i] != HF_OK && hf_status_has_shape(p->trial_status[i]);
+        p->n_evaluation_above_cap += p->pending[i] && was_outside(p, i);
         p->n_infeasible += is_infeasible;
         p->least_violation[p->generation] = fmin(p->least_violation[p->generation], hf_population_violation(r));
         if (is_infeasible) continue;

@@ -405,19 +405,18 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
         double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;
         bool is_inside = status == HF_OK && hf_watch_keeps(&p->watch, p->w),
              is_nearer = is_inside || after < p->violation;
-        if (is_nearer)
-            p->way = fmin(1, 2 * p->way);
-        else if (p->damping < DAMPING_OF_WAY)
-            p->way /= 2;
-        else
-            p->damping *= WAY_GROWTH;
         if (is_nearer) {
+            p->way = fmin(1, 2 * p->way);
             p->violation = after;
             hf_refine_keep(p);
             p->is_outside = !is_inside;
             if (is_inside) p->damping = DAMPING_FIRST;
             r->merit = hf_refine_merit(p, &p->result);
             HF_TRY(hf_refine_linearise(p));
+        } else if (p->damping < DAMPING_OF_WAY) {
+            p->way /= 2;
+        } else {
+            p->damping *= WAY_GROWTH;
         }
         count_way(p);
         HF_TRY(tell_watcher(p, r, max_iterations));

@@ -201,11 +201,6 @@ double hf_watch_violation(hf_watch *q, const hf_workspace *w)
 }
 
 /* Returns the location of the rate of an item by variable j. */
-static double *rate_at(const hf_watch *q, ptrdiff_t i_item, int j)
-{
-    return q->rate + (ptrdiff_t)(1 + j) * q->ld + i_item;
-}
-
 /* Computes the rates of the magnitude of the displacement of an attachment. */
 static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, const hf_workspace *w, double *rate)
 {
@@ -224,7 +219,7 @@ static void pull_rates(hf_watch *q, const hf_sensitivity *s, const hf_workspace 
         hf_sensitivity_spread(s, j, q->move_m, q->tension_rate);
         hf_objectives_pull_rates(q->v->model, w, q->point, &by, q->pull_rate);
         for (int i = 0; i < q->n; i++)
-            if (q->item[i].support >= 0) *rate_at(q, i, j) = q->pull_rate[q->item[i].support];
+            if (q->item[i].support >= 0) *hf_watch_rate(q, i, j) = q->pull_rate[q->item[i].support];
     }
 }
 
@@ -249,7 +244,7 @@ void hf_watch_linearise(hf_watch *q, const hf_sensitivity *s, const hf_workspace
             rate = q->objective_rate + (size_t)t->objective * (size_t)q->n_class;
         }
         for (int j = 0; j < q->n_class && t->support < 0; j++)
-            *rate_at(q, i, j) = rate[j];
+            *hf_watch_rate(q, i, j) = rate[j];
         has_pull |= t->support >= 0;
     }
     if (has_pull) pull_rates(q, s, w);
@@ -306,7 +301,7 @@ void hf_watch_learn(hf_watch *q, const double *x, const hf_workspace *w)
 /* Returns the rate of an item by variable j. */
 static double rate_of(const hf_watch *q, const hf_watched *t, int j)
 {
-    return *rate_at(q, t - q->item, j);
+    return *hf_watch_rate(q, t - q->item, j);
 }
 
 /* Returns HF_WATCH_OBJECTIVE plus the index of the item, by which hf_watch_relief finds it again. */

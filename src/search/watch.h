@@ -76,6 +76,12 @@ bool hf_watch_keeps(hf_watch *watch, const hf_workspace *workspace);
 /* Makes the shape in the workspace the best one, and computes the rates of all items there. */
 void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, const hf_workspace *workspace);
 
+/* Returns where the rate of an item by a class of linked variables is. */
+static inline double *hf_watch_rate(const hf_watch *watch, ptrdiff_t i_item, int i_class)
+{
+    return watch->rate + (ptrdiff_t)(1 + i_class) * watch->ld + i_item;
+}
+
 /* Sets the limits of the next step: it goes this part of the way from the best variables into the limits that they
  * break. With part 1, as after hf_watch_linearise, it keeps all limits. */
 void hf_watch_aim(hf_watch *watch, double part);
