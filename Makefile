@@ -284,14 +284,14 @@ bench-instructions: ## instructions of three cases on one thread against results
 # benchmark can run in parts, one after another.
 OPTIMISER_SEEDS ?= 7
 OPTIMISER_ONLY ?=
-bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: results/bench/optimisers* (1 hour)
+bench-optimisers: ## our genetic algorithm beside pagmo's, nlopt's, scipy's: results/bench/optimisers* (hours)
 	$(Q)tools/setup.sh --optimisers
 	$(SUB) $(PROGRAM) $(PEERS)
 	@mkdir -p $(BENCH_OUT)
 	$(PYTHON) tools/optimisers/run.py --driver $(PEERS) --program $(PROGRAM) --seeds $(OPTIMISER_SEEDS) \
 	    --only $(call quote,$(OPTIMISER_ONLY)) --out $(BENCH_OUT)
 
-bench-auto: ## `method: auto` from 20 seeds beside nlopt and pagmo: results/bench/auto.csv, best.csv, caps.csv (10 min)
+bench-auto: ## `method: auto` from 20 seeds beside nlopt and pagmo: results/bench/auto.csv, best.csv, caps.csv (30 min)
 	$(Q)tools/setup.sh --optimisers
 	$(SUB) $(PROGRAM) $(BUDGET)
 	@mkdir -p $(BENCH_OUT)

@@ -6,8 +6,8 @@
  * Every optimiser sees the same function: psi of a design in the unit cube of its bounds, evaluated by the library as
  * `hifdm run` evaluates its individuals. A design above the cap on the boundary ratio costs 1 km and its violation, one
  * without a shape 1000 km. If one of the first designs is above the cap, pagmo also gets the cap as a constraint
- * (cstrs_self_adaptive). All begin with the same 50 designs (BOBYQA with the base, the first of them). Each is also tried with one variable per chain of
- * boundary cables, all cables of which then take the same step.
+ * (cstrs_self_adaptive). All begin with the same 50 designs (BOBYQA with the base, the first of them). Each is also
+ * tried with one variable per chain of boundary cables, all cables of which then take the same step.
  *
  * Most of them ask for one design at a time, which takes the library as long as eight. So eight runs go on at once,
  * each on a stack of its own: one that asks waits until the others have asked as well.
@@ -32,6 +32,7 @@
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -261,21 +262,19 @@ void run_bobyqa(run &r)
     o.optimize(v, least);
 }
 
-/* Returns true if none of the first designs of seed 1 is above the cap. */
-bool meets_cap()
+/* Returns true if one of the first designs of seed 1 is above the cap. */
+bool exceeds_cap()
 {
     ours start(1);
     hf_population *p = &start.o.population;
-    bool is_met = true;
     hf_batch_run(&problem.batch, p->n_individual, p->design, nullptr, p->result);
-    for (int i = 0; i < p->n_individual; i++)
-        is_met = is_met && p->result[i].status != HF_RATIO_CAP;
-    return is_met;
+    return std::any_of(p->result, p->result + p->n_individual,
+                       [](const hf_form_result &r) { return r.status == HF_RATIO_CAP; });
 }
 
 void run_all(unsigned n_seed, long limit)
 {
-    bool has_cap = !meets_cap();
+    bool has_cap = exceeds_cap();
     std::vector<std::unique_ptr<run>> runs;
     auto add = [&](const std::string &name, bool by_chain, unsigned seed, std::function<void(run &)> work) {
         runs.emplace_back(new run{name, by_chain, seed, limit, std::move(work)});
