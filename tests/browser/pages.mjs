@@ -337,7 +337,7 @@ export const pages = [
     look: true,
     study: 18,
     says: {
-      "main > p.advice": /^Pretension \d(?:\.5)? N and pretension \d(?:\.5)? N (are not shown to )?differ by more than the scatter /,
+      "main > p.advice": /^Pretension [\d.]+ N and pretension [\d.]+ N (are not shown to )?differ by more than the sc/,
       "#sweep .chart >> nth=0": /Each mark is the median of the replicates\. The error bar extends between/,
       ".figures": /best median/,
     },
