@@ -116,10 +116,11 @@ static void plan_far_field(hf_check *c)
 /* ---- memory ---- */
 
 /* Returns the bytes that Levenberg-Marquardt needs: sensitivities (twice as many with a truss), residuals of the inner
- * nodes, matrices of its steps, and the packed Newton matrix. */
+ * nodes, matrices of its steps, and the packed Newton matrix; or the band of the saddle-point system. */
 static double refine_bytes(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
+    if (hf_refine_is_sparse(v)) return 8 * 36.0 * m->n_free * (m->half_bandwidth + 1);
     size_t lanes, matrix = hf_chord_bytes(v, &lanes);
     double n = m->n_leader, column = 3.0 * m->n_free * (m->n_attachment ? 2 : 1) + 3.0 * m->n_inner_node;
     return 8 * n * (column + 4 * n) + (double)(matrix + lanes);

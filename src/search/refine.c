@@ -28,6 +28,10 @@
 #define DAMPING_FIRST 1e-3    /* first damping, relative to the squared columns of J [1e-6 to 1] */
 /* The multipliers and the gain that the model still predicts are found with this damping, which is nearly none. */
 #define DAMPING_NEARLY_NONE 1e-9
+/* The damping of steps by the saddle-point system is relative to the rates of a cable alone, and the first one must not
+ * lead to many active bounds [0.1 to 10]. One step lowers it to no less than this part [0.1 to 0.8]. */
+#define SPARSE_DAMPING_FIRST 1
+#define SPARSE_FALL 0.3
 #define SCALE_LEAST 1e-8    /* a column of J below this part of the maximum one is damped like the maximum */
 #define DAMPING_LEAST 1e-14 /* minimum damping [1e-20 to 1e-8] */
 #define DAMPING_MOST 1e12   /* stalled: with more damping, a step is too short to change psi [1e4 to 1e24] */
@@ -69,7 +73,11 @@
 #define STEP_EVALUATIONS 2
 #define NEWTON_STEPS 5
 #define CHORD_STEPS 4
+#define SADDLE_FACTORS 5 /* with their solves */
 #define UNNOTICED 2e8
+/* The dense algebra of a step may take this many times the operations of a factorisation of the saddle-point system. */
+#define DENSE_UP_TO 20
+#define DENSE_MOST 5000     /* variables for which dense steps may continue a run: 0.6 GB */
 #define MODEL_GENERATIONS 3 /* generations whose time a model for repairs may take */
 #define MODEL_MAX 1e7       /* derivatives of positions that a search may keep: 80 MB */
 
@@ -96,12 +104,31 @@ static double count_model(const hf_evaluator *v, double *newton, double *evaluat
     return factor + m->n_leader * solve;
 }
 
+/* Returns the operations of the dense algebra of one step, apart from the derivatives. */
+static double count_dense(const hf_evaluator *v)
+{
+    double n = v->model->n_leader, n_row = 3.0 * v->model->n_inner_node;
+    return n * n * ((v->objectives && v->objectives->nets ? v->objectives->n_row : n_row) + 2 * n);
+}
+
+/* Returns the operations of one factorisation of the saddle-point system. */
+static double count_saddle(const hf_evaluator *v)
+{
+    double width = 6.0 * v->model->half_bandwidth + 6;
+    return 6.0 * v->model->n_free * width * width;
+}
+
+bool hf_refine_is_sparse(const hf_evaluator *v)
+{
+    return hf_saddle_step_applies(v) && count_dense(v) > DENSE_UP_TO * count_saddle(v);
+}
+
 /* Returns the operations of one step. *evaluation_of_ga receives those of one evaluation of the genetic algorithm. */
 static double count_step(const hf_evaluator *v, double *evaluation_of_ga)
 {
-    double newton, evaluation, model = count_model(v, &newton, &evaluation), n = v->model->n_leader;
-    double n_row = v->objectives && v->objectives->nets ? v->objectives->n_row : 3.0 * v->model->n_inner_node;
-    double step = STEP_EVALUATIONS * newton + model + n * n * (n_row + 2 * n);
+    double newton, evaluation, model = count_model(v, &newton, &evaluation);
+    double algebra = hf_refine_is_sparse(v) ? SADDLE_FACTORS * count_saddle(v) : model + count_dense(v);
+    double step = STEP_EVALUATIONS * newton + algebra;
     for (int i = 0; v->objectives && v->objectives->nets && i < hf_objectives_nets_count(v->objectives->nets); i++) {
         if (!hf_objectives_are_over(v->objectives, i)) continue;
         evaluation += newton;
@@ -190,12 +217,26 @@ static double damped_scale(const hf_refine_problem *p, int r)
     return p->largest_scale > 0 ? p->largest_scale : 1;
 }
 
+/* Does the same as solve_step by the saddle-point system. f: NULL, or the residuals at the end of the last step, for
+ * which the same model is solved again. */
+static hf_status solve_sparse(hf_refine_problem *p, double damping, const double *f, double *gain)
+{
+    for (int r = 0; r < p->n; r++) {
+        p->down[r] = p->low[r] - p->at[r];
+        p->up[r] = p->high[r] - p->at[r];
+    }
+    hf_saddle_step_bend(&p->saddle, f);
+    hf_saddle_step_limit(&p->saddle, &p->watch);
+    return hf_saddle_step_solve(&p->saddle, damping, p->down, p->up, p->unit, p->step.side, p->step.x, gain);
+}
+
 /* Finds step.x, the minimum of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits. *gain receives the
  * decrease of merit^2/2 that the model promises. Returns the status of hf_quadratic_solve. */
 static hf_status solve_step(hf_refine_problem *p, double damping, double *gain)
 {
     const double *x = p->step.x;
     int n = p->n, n_step = p->step.n;
+    if (p->is_sparse) return solve_sparse(p, damping, NULL, gain);
     for (int r = 0; r < n; r++) {
         memcpy(p->hessian + r * n_step, p->gram + r * n, (size_t)(r + 1) * sizeof(double));
         p->hessian[r * n_step + r] += damping * damped_scale(p, r) * damped_scale(p, r);
@@ -225,7 +266,12 @@ static hf_status try_step(hf_refine_problem *p, double damping, double *gain)
         if (again == 0) p->promise = *gain;
         HF_TRY(take_step(p));
         if (hf_watch_keeps(&p->watch, p->w)) return HF_OK;
-        hf_watch_learn(&p->watch, p->step.x, p->w);
+        p->needs_dense = p->is_sparse && hf_watch_breaks_cap(&p->watch);
+        if (p->needs_dense) return HF_RATIO_CAP;
+        if (p->is_sparse)
+            hf_saddle_step_learn(&p->saddle, &p->watch);
+        else
+            hf_watch_learn(&p->watch, p->step.x, p->w);
     }
     return HF_RATIO_CAP;
 }
@@ -246,6 +292,15 @@ static void find_pull(hf_refine_problem *p)
         }
 }
 
+/* Solves the step again with the residuals found at its end. */
+static hf_status solve_bent(hf_refine_problem *p)
+{
+    double gain;
+    if (p->is_sparse) return solve_sparse(p, p->damping, p->residuals.value, &gain);
+    find_pull(p);
+    return hf_quadratic_solve(&p->step, p->hessian, p->pull, p->down, p->up, worst_limit, p);
+}
+
 /* Corrects a step for the curvature of the residuals: along a curved valley, a step ends on its flank. With the
  * residuals found there, the same matrices lead back to the floor. This is repeated as long as it at least halves the
  * merit (BEND_WORTH). `before` is merit^2/2 before the step, `gain` its promised decrease. If the best merit is below
@@ -258,8 +313,7 @@ static hf_status bend_step(hf_refine_problem *p, double before, double gain)
         double merit = p->result.merit;
         if (before - merit * merit / 2 > BEND_BELOW * gain || hf_residuals_find(&p->residuals, p->w) != HF_OK) break;
         memcpy(p->step_taken, p->step.x, size);
-        find_pull(p);
-        hf_status status = hf_quadratic_solve(&p->step, p->hessian, p->pull, p->down, p->up, worst_limit, p);
+        hf_status status = solve_bent(p);
         if (status == HF_OK) status = take_step(p);
         if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
         if (status == HF_OK && hf_watch_keeps(&p->watch, p->w) && p->result.merit < merit) {
@@ -386,6 +440,8 @@ static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
 static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_result *r)
 {
     double gain;
+    p->needs_dense = p->is_sparse && hf_watch_breaks_cap(&p->watch);
+    if (p->needs_dense) return HF_OK;
     hf_watch_forget(&p->watch);
     if (is_scaled_first(p, max_iterations, r)) {
         HF_TRY(scale_into(p, r));
@@ -538,6 +594,10 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
         }
         r->iterations++;
         status = try_step(p, p->damping, &gain);
+        if (p->needs_dense) {
+            r->iterations--;
+            return HF_OK;
+        }
         if (status == HF_OK && !p->front) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double merit = hf_refine_merit(p, &p->result), after = status == HF_OK ? merit * merit / 2 : (double)INFINITY;
@@ -554,7 +614,9 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
             r->merit = merit;
             learn_pressure(p);
             double share = 2 * (before - after) / gain - 1;
-            if (gain > 0) p->damping = fmax(DAMPING_LEAST, p->damping * fmax(0.1, 1 - share * share * share));
+            if (gain > 0)
+                p->damping =
+                    fmax(DAMPING_LEAST, p->damping * fmax(p->is_sparse ? SPARSE_FALL : 0.1, 1 - share * share * share));
             p->growth = 2;
             if (r->stop == HF_REFINE_MAX_ITERATIONS) status = hf_refine_linearise(p);
         } else {
@@ -612,6 +674,21 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
     return HF_OK;
 }
 
+/* Returns true if steps by the saddle-point system have led no farther, and dense steps continue from the best design:
+ * after the cap, outside the limits, or stalled. There must be memory for them, except that the cap needs them. */
+static bool lacks_steps(hf_refine_problem *p, hf_refine_result *r)
+{
+    bool is_stuck = p->is_outside || r->stop == HF_REFINE_STALLED;
+    p->needs_dense |= p->is_sparse && p->n <= DENSE_MOST && is_stuck && r->iterations > 0;
+    if (!p->needs_dense) return false;
+    r->stop = HF_REFINE_MAX_ITERATIONS;
+    p->damping = DAMPING_FIRST;
+    p->growth = 2;
+    p->way = 1;
+    p->settled_steps = 0;
+    return true;
+}
+
 /* Refines the design whose result is `start` and whose shape is in the workspace. Returns what hf_refine_run does. */
 static hf_status refine_from(hf_refine_problem *p, int max_iterations, hf_form_result *start, double *design,
                              hf_refine_result *r)
@@ -626,11 +703,24 @@ static hf_status refine_from(hf_refine_problem *p, int max_iterations, hf_form_r
     if (start->status == HF_OK && hf_watch_breaks(p->front, p->caller->objectives, 0, start->objective))
         start->status = HF_OUT_OF_LIMITS;
     HF_TRY(minimise(p, max_iterations, r));
+    if (lacks_steps(p, r)) return HF_OK;
     if (p->is_outside && !p->front && hf_refine_n_constraint(p) > 0) /* the nearest design shows what cannot be met */
         memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (p->is_outside) return start->status == HF_OK ? HF_OUT_OF_LIMITS : start->status;
     if (p->front) HF_TRY(find_multipliers(p, r));
     return hand_over(p, start, design, r);
+}
+
+/* Runs with the settings of `p`, which hf_refine_destroy frees in any case. */
+static hf_status run_once(hf_refine_problem *p, int max_iterations, double *design, hf_refine_result *r)
+{
+    hf_form_result start;
+    *r = (hf_refine_result){.stop = HF_REFINE_MAX_ITERATIONS, .predicted_gain = NAN};
+    HF_TRY(hf_refine_create(p));
+    hf_evaluate(p->caller, design, p->w, hf_residuals_point(&p->residuals), &start);
+    hf_status status = refine_from(p, max_iterations, &start, design, r);
+    r->evaluations = p->evaluations;
+    return status;
 }
 
 hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
@@ -648,17 +738,26 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
                            .growth = 2,
                            .way = 1,
                            .settled_merit = INFINITY};
-    hf_form_result start;
-    *result = (hf_refine_result){.stop = HF_REFINE_MAX_ITERATIONS, .predicted_gain = NAN};
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
-    hf_status status = hf_refine_create(&p);
-    if (status == HF_OK) {
-        hf_evaluate(evaluator, design, w, hf_residuals_point(&p.residuals), &start);
-        status = refine_from(&p, max_iterations, &start, design, result);
-        result->evaluations = p.evaluations;
+    hf_refine_problem sparse = p; /* comes first where it is faster */
+    sparse.is_sparse =
+        !front && hf_refine_is_sparse(evaluator) && !(watcher && hf_refine_was_dense(watcher->n_state, watcher->state));
+    sparse.damping = SPARSE_DAMPING_FIRST;
+    hf_refine_watcher from_there = watcher ? *watcher : (hf_refine_watcher){0};
+    hf_status status = HF_OK;
+    if (sparse.is_sparse) status = run_once(&sparse, max_iterations, design, result);
+    if (sparse.needs_dense) { /* from its best design on */
+        hf_refine_pack(&sparse, result);
+        from_there.state = sparse.state;
+        from_there.n_state = sparse.n_state;
+        p.watcher = &from_there;
     }
-    hf_refine_destroy(&p);
+    if (!sparse.is_sparse || (status == HF_OK && sparse.needs_dense)) {
+        status = run_once(&p, max_iterations, design, result);
+        hf_refine_destroy(&p);
+    }
+    hf_refine_destroy(&sparse);
     return status;
 }

@@ -54,6 +54,11 @@ typedef struct {
  * variables, the rule must not be `seeded`, and no objective may be a quantile. */
 bool hf_refine_applies(const hf_evaluator *evaluator);
 
+/* Returns true if steps are solved by one sparse saddle-point system (saddle_step.h), because that takes far fewer
+ * counted operations than dense derivatives by each variable. A step that breaks the cap on the boundary tension ratio
+ * makes the run continue with dense derivatives. */
+bool hf_refine_is_sparse(const hf_evaluator *evaluator);
+
 /* Returns the counted floating-point operations of one step. A core performs some 8e9 of them per second. */
 double hf_refine_operations(const hf_evaluator *evaluator);
 

@@ -29,6 +29,7 @@
     X(ITERATIONS, r->iterations, int)                                                                                  \
     X(EVALUATIONS, p->evaluations, int)                                                                                \
     X(STOP, r->stop, hf_refine_stop)                                                                                   \
+    X(IS_SPARSE, p->is_sparse, bool)                                                                                   \
     X(IS_OUTSIDE, p->is_outside, bool)                                                                                 \
     X(MERIT, r->merit, double)                                                                                         \
     X(PSI, p->best_psi_m, double)                                                                                      \
@@ -47,7 +48,7 @@ enum {
     STATE_SCALARS(INDEX) STATE_SETTLED_OBJECTIVE,
     N_SCALAR = STATE_SETTLED_OBJECTIVE + HF_DESIGN_ROWS_MAX
 };
-#define FORMAT 3
+#define FORMAT 4
 
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
 {
@@ -114,10 +115,11 @@ hf_status hf_refine_create(hf_refine_problem *to)
 {
     const hf_model *m = to->v.model;
     to->n = m->n_leader;
-    HF_TRY(hf_sensitivity_create(&to->v, &to->slopes));
+    HF_TRY((to->is_sparse ? hf_sensitivity_number : hf_sensitivity_create)(&to->v, &to->slopes));
     HF_TRY(hf_residuals_create(&to->v, &to->residuals));
     HF_TRY(hf_watch_create(to->caller, &to->slopes, to->lower, to->upper, to->front, &to->watch));
     size_t n = (size_t)to->n, n_row = (size_t)to->residuals.n_row, n_variable = (size_t)m->n_variable;
+    size_t n_dense = to->is_sparse ? 0 : n;
     to->n_state = N_SCALAR + 3 * n + n_variable;
     HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_REFINE_FIELDS(HF_ARENA_ITEM)));
     aim(to);
@@ -125,11 +127,14 @@ hf_status hf_refine_create(hf_refine_problem *to)
         to->watch.constraint = hf_residuals_point(&to->residuals)->constraint;
         to->watch.constraint_rate = to->constraint_rate;
     }
-    return hf_quadratic_create(to->n + to->has_corners, &to->step);
+    if (!to->is_sparse) return hf_quadratic_create(to->n + to->has_corners, &to->step);
+    to->step = (hf_quadratic){.n = to->n, .x = to->sparse_x, .side = to->sparse_side};
+    return hf_saddle_step_create(&to->v, to->residuals.n_row, &to->saddle);
 }
 
 void hf_refine_destroy(hf_refine_problem *p)
 {
+    hf_saddle_step_free(&p->saddle);
     hf_arena_free_block(p->step.block);
     hf_arena_free_block(p->watch.block);
     hf_residuals_free(&p->residuals);
@@ -233,8 +238,19 @@ static void linearise_front(hf_refine_problem *p)
             press(p, k, first, g->objective[k].n_row);
 }
 
+/* Makes the model of the saddle-point system at the shape in the workspace. */
+static hf_status linearise_sparse(hf_refine_problem *p)
+{
+    HF_TRY(hf_residuals_find(&p->residuals, p->w));
+    hf_saddle_step_linearise(&p->saddle, p->w, p->residuals.value);
+    p->noise = p->v.form->residual_tolerance * hf_saddle_step_spread(&p->saddle, p->unit);
+    hf_watch_linearise(&p->watch, &p->slopes, p->w);
+    return HF_OK;
+}
+
 hf_status hf_refine_linearise(hf_refine_problem *p)
 {
+    if (p->is_sparse) return linearise_sparse(p);
     HF_TRY(hf_sensitivity_find(&p->slopes, p->w));
     HF_TRY(hf_residuals_find(&p->residuals, p->w));
     HF_TRY(hf_residuals_rates(&p->residuals, &p->slopes, p->w, p->row, p->gradient));
@@ -283,12 +299,19 @@ static bool is_state(const hf_refine_problem *p, size_t n_state, const double *s
            s[STATE_SETTLED_STEPS] < INT_MAX;
 }
 
+bool hf_refine_was_dense(size_t n_state, const double *s)
+{
+    return s && n_state > N_SCALAR && s[STATE_FORMAT] == FORMAT && s[STATE_IS_SPARSE] == 0;
+}
+
 bool hf_refine_resume(hf_refine_problem *p, size_t n_state, const double *s, hf_refine_result *r)
 {
     const double *array = s + N_SCALAR;
     size_t n = (size_t)p->n;
     if (!is_state(p, n_state, s)) return false;
+    bool is_sparse = p->is_sparse; /* a dense run may continue one by the saddle-point system */
     STATE_SCALARS(READ)
+    p->is_sparse = is_sparse;
     p->evaluations--; /* the best design is evaluated once more */
     if (p->watcher->is_more && r->stop == HF_REFINE_SETTLED) r->stop = HF_REFINE_MAX_ITERATIONS;
     memcpy(p->settled_objective, s + STATE_SETTLED_OBJECTIVE, sizeof p->settled_objective);
@@ -296,7 +319,7 @@ bool hf_refine_resume(hf_refine_problem *p, size_t n_state, const double *s, hf_
     memcpy(p->scale, array + n, n * sizeof(double));
     for (size_t i = 0; i < n; i++) {
         p->largest_scale = fmax(p->largest_scale, p->scale[i]);
-        p->step.side[i] = (array[2 * n + i] > 0) - (array[2 * n + i] < 0);
+        p->step.side[i] = (int)fmax(-2, fmin(2, array[2 * n + i]));
     }
     memcpy(p->best, array + 3 * n, (size_t)p->v.model->n_variable * sizeof(double));
     return true;

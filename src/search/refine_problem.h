@@ -6,9 +6,11 @@
 #include "linalg/quadratic.h"
 #include "search/refine.h"
 #include "search/residuals.h"
+#include "search/saddle_step.h"
 #include "search/watch.h"
 
-/* The arrays of the problem: n variables, n_row residuals, n_variable design variables. */
+/* The arrays of the problem: n variables, n_row residuals, n_variable design variables. n_dense is n, or 0 for steps by
+ * the saddle-point system. */
 #define HF_REFINE_FIELDS(X)                                                                                            \
     X(double, start, n_variable, "first values; those of tensions are pretensions q L*")                               \
     X(double, low, n, "lower bounds of the variables")                                                                 \
@@ -23,9 +25,11 @@
     X(double, step_taken, n, "the step that led to `trial` while it is corrected")                                     \
     X(double, pull, n, "gradient of a correction")                                                                     \
     X(double, scale, n, "maximum norm so far of each column of J")                                                     \
-    X(double, row, n *n_row, "[n][n_row] J'")                                                                          \
-    X(double, gram, n *n, "[n][n] J'J; lower triangle by rows, like `hessian`")                                        \
-    X(double, hessian, (n + 1) * (n + 1), "[n][n] J'J with damping")                                                   \
+    X(double, row, n_dense *n_row, "[n][n_row] J'")                                                                    \
+    X(double, gram, n_dense *n_dense, "[n][n] J'J; lower triangle by rows, like `hessian`")                            \
+    X(double, hessian, n_dense ? (n + 1) * (n + 1) : 0, "[n][n] J'J with damping")                                     \
+    X(double, sparse_x, n - n_dense, "the step of the saddle-point system")                                            \
+    X(int, sparse_side, n - n_dense, "its active limits, as in hf_saddle_cable")                                       \
     X(double, gradient, n + 1, "[n] J'f")                                                                              \
     X(double, objective_rate, to->front ? n *(size_t)to->v.objectives->n_objective : 0,                                \
       "[n_objective][n] gradients of objectives without corners, for a point of a front")                              \
@@ -44,7 +48,10 @@ typedef struct {
     hf_sensitivity slopes;
     hf_residuals residuals;
     hf_watch watch;
-    hf_quadratic step;
+    hf_quadratic step;                /* for steps by the saddle-point system only x, side and n */
+    bool is_sparse;                   /* true: steps by `saddle`, without derivatives by each variable */
+    hf_saddle_step saddle;            /* used if is_sparse */
+    bool needs_dense;                 /* a step of `saddle` broke the cap, which is not in its model */
     const hf_watch_front *front;      /* the objective to minimise and the limits on the others, or NULL */
     const hf_refine_watcher *watcher; /* NULL: no watcher */
     hf_status told;                   /* the last status of the watcher */
@@ -106,6 +113,8 @@ void hf_refine_keep(hf_refine_problem *problem);
 hf_status hf_refine_linearise(hf_refine_problem *problem);
 
 /* Writes the state between two iterations into `state`. hf_refine_resume resumes from a state, after hf_refine_begin of
- * the same design, with the same bits. It returns false and changes nothing if the state belongs to another problem. */
+ * the same design, with the same bits. It returns false and changes nothing if the state belongs to another problem.
+ * hf_refine_was_dense returns true if the state is that of a run without the saddle-point system. */
 void hf_refine_pack(hf_refine_problem *problem, const hf_refine_result *result);
+bool hf_refine_was_dense(size_t n_state, const double *state);
 bool hf_refine_resume(hf_refine_problem *problem, size_t n_state, const double *state, hf_refine_result *result);

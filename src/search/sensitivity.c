@@ -75,13 +75,22 @@ static void number(hf_sensitivity *s)
     s->n_dof = 3 * ((size_t)m->n_free + (size_t)m->n_attachment + (size_t)place_supports(m, s->base_of_row));
 }
 
+hf_status hf_sensitivity_number(const hf_evaluator *v, hf_sensitivity *to)
+{
+    const hf_model *m = v->model;
+    *to = (hf_sensitivity){.v = v};
+    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_SENSITIVITY_INDICES(HF_ARENA_ITEM)));
+    number(to);
+    return HF_OK;
+}
+
 hf_status hf_sensitivity_create(const hf_evaluator *v, hf_sensitivity *to)
 {
     const hf_model *m = v->model;
-    *to = (hf_sensitivity){.v = v, .n = m->n_leader, .matrix = hf_newton_matrix_packed(m)};
+    HF_TRY(hf_sensitivity_number(v, to));
+    to->n = m->n_leader;
+    to->matrix = hf_newton_matrix_packed(m);
     to->n_lane = hf_packed_band_rows(&to->matrix) * HF_LANES;
-    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_SENSITIVITY_INDICES(HF_ARENA_ITEM)));
-    number(to);
     HF_TRY(HF_ARENA_MAKE(&to->arena, lay_out(&to->arena, to)));
     return m->n_attachment ? hf_schur_create(m, &to->schur) : HF_OK;
 }

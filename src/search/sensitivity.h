@@ -55,6 +55,10 @@ typedef struct {
 hf_status hf_sensitivity_create(const hf_evaluator *evaluator, hf_sensitivity *sensitivity);
 void hf_sensitivity_free(hf_sensitivity *sensitivity);
 
+/* Allocates only the indices, for steps that need no derivatives by each variable. Its n is 0. Returns like
+ * hf_sensitivity_create. */
+hf_status hf_sensitivity_number(const hf_evaluator *evaluator, hf_sensitivity *sensitivity);
+
 /* Computes `move` at the shape in the workspace, which hf_evaluate must have found. Returns HF_OK or HF_SINGULAR. */
 hf_status hf_sensitivity_find(hf_sensitivity *sensitivity, hf_workspace *workspace);
 

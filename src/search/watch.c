@@ -174,6 +174,11 @@ static double ratio_of(const hf_watch *q, int k)
     return least > 0 ? largest / least : (double)INFINITY;
 }
 
+bool hf_watch_breaks_cap(const hf_watch *q)
+{
+    return q->has_cap && ratio_of(q, 0) > q->cap[0];
+}
+
 bool hf_watch_keeps(hf_watch *q, const hf_workspace *w)
 {
     look(q, w);
@@ -200,7 +205,6 @@ double hf_watch_violation(hf_watch *q, const hf_workspace *w)
     return sum;
 }
 
-/* Returns the location of the rate of an item by variable j. */
 /* Computes the rates of the magnitude of the displacement of an attachment. */
 static void displacement_rates(const hf_watched *t, const hf_sensitivity *s, const hf_workspace *w, double *rate)
 {

@@ -73,6 +73,9 @@ hf_status hf_watch_create(const hf_evaluator *evaluator, const hf_sensitivity *s
 /* Returns true if the shape in the workspace keeps all limits. */
 bool hf_watch_keeps(hf_watch *watch, const hf_workspace *workspace);
 
+/* Returns true if the shape that was measured last breaks the cap on the boundary tension ratio. */
+bool hf_watch_breaks_cap(const hf_watch *watch);
+
 /* Makes the shape in the workspace the best one, and computes the rates of all items there. */
 void hf_watch_linearise(hf_watch *watch, const hf_sensitivity *slopes, const hf_workspace *workspace);
 

@@ -138,6 +138,40 @@ START_TEST(a_start_just_above_a_cap_of_many_cables_is_led_in)
 END_TEST
 
 /* Evenness has no value where all tensions are zero, and a weight without end none at all: no design at all. */
+/* 703 variables take steps by the saddle-point system. A limit on a ratio is not in its model: it makes the same net
+ * take steps with dense derivatives. A cap that binds makes a run continue with them. */
+START_TEST(many_variables_reach_what_dense_steps_reach)
+{
+    const char *c = file_with(
+        "c.yaml", "scene: {paraboloid: {aperture_m: 12, focal_length_m: 6, rings: 6, rear_distance_m: 3.6}}\n"
+                  "form: {pretension_N: 10, prestress: exact, residual_tolerance: 1e-12}\n"
+                  "coupling: {tof_m: 1e-12}\n"
+                  "truss: {ring: {cells_per_bay: 1, held: bay, longeron: {diameter_m: 0.03, wall_m: 0.001}}}\n"
+                  "optimize:\n  method: lm\n  refine_steps: 100\n"
+                  "  variables: [{set: all, vary: force_density, bounds: [0.5, null]}]\n"
+                  "  objective: [{figure: psi}, {figure: evenness, set: front, weight: 1e-5}]\n");
+    const char *out = temp("r.h5"), *other = temp("o.h5");
+    HIFDM(0, "run", c, "-o", out, "--quiet", "--threads", "1");
+    HIFDM(0, "run", c, "-o", other, "--quiet", "--threads", "2");
+    HIFDM(0, "diff", out, other);
+    EXPECT(out, "--", "a['refine'].attrs['psi_m'] < 1e-12 < a['form'].attrs['psi_m'] / 1e8",
+           "a['refine'].attrs['merit'] < 1e-14", "a['refine'].attrs['algorithm_stop'] == 0",
+           "1 < a['refine'].attrs['boundary_tension_ratio'] < 10", "a['refine'].attrs['steps'] < 40");
+    HIFDM(0, "run", c, "-o", other, "--quiet", "--force", "--set", "optimize.refine_steps=12", "--set",
+          "optimize.limits=[{figure: ratio, set: all, bounds: [null, 1000]}]");
+    EXPECT(other, "--", "a['refine'].attrs['psi_m'] < 1e-6");
+    HIFDM(0, "run", c, "-o", other, "--quiet", "--force", "--set", "optimize.boundary_ratio_cap=1.3", "--set",
+          "optimize.refine_steps=15");
+    EXPECT(other, "--", "a['refine'].attrs['boundary_tension_ratio'] <= 1.3", "a['refine'].attrs['psi_m'] < 1e-6",
+           "a['refine'].attrs['steps'] == 15", "a['refine'].attrs['merit'] < 2e-7");
+    HIFDM(0, "run", c, "-o", other, "--quiet", "--force", "--set", "optimize.refine_steps=15", "--set",
+          "optimize.limits=[{figure: tension, set: all, bounds: [3, 40]}]"); /* the start breaks it */
+    EXPECT(other, "--", "a['form/tension_N'][:].min() < 2.5", "a['refine/tension_N'][:].min() >= 3 * (1 - 1e-8)",
+           "a['refine/tension_N'][:].max() <= 40 * (1 + 1e-8)", "(a['refine/tension_N'][:] < 3.0001).sum() >= 6",
+           "a['refine'].attrs['psi_m'] < 1e-6");
+}
+END_TEST
+
 START_TEST(a_merit_without_a_value_is_no_merit)
 {
     const char *net = net_of("loaded", LOADED), *out = temp("r.h5");
@@ -293,6 +327,7 @@ Suite *suite_cli_limits(void)
     tcase_add_test(tests, a_displacement_of_zero_holds_nothing);
     tcase_add_loop_test(tests, a_start_beyond_its_displacements_is_led_in, 0, 4);
     tcase_add_test(tests, a_start_just_above_a_cap_of_many_cables_is_led_in);
+    tcase_add_test(tests, many_variables_reach_what_dense_steps_reach);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
     tcase_add_test(tests, scipy_gains_nothing_on_objectives);
