@@ -28,8 +28,9 @@
 #define DAMPING_FIRST 1e-3    /* first damping, relative to the squared columns of J [1e-6 to 1] */
 /* The multipliers and the gain that the model still predicts are found with this damping, which is nearly none. */
 #define DAMPING_NEARLY_NONE 1e-9
-/* The damping of steps by the saddle-point system is relative to the rates of a cable alone, and the first one must not
- * lead to many active bounds [0.1 to 10]. One step lowers it to no less than this part [0.1 to 0.8]. */
+/* The damping of steps by the saddle-point system is relative to the merit (saddle_step.h). With less of it first, many
+ * bounds become active at once. One step lowers it to no less than the part SPARSE_FALL, because corrected steps hide
+ * how curved a valley is. */
 #define SPARSE_DAMPING_FIRST 1
 #define SPARSE_FALL 0.3
 #define SCALE_LEAST 1e-8    /* a column of J below this part of the maximum one is damped like the maximum */
