@@ -2,6 +2,7 @@
 #include "support.h"
 
 #include "linalg/block_band.h"
+#include "linalg/block_band_kernel.h"
 #include "linalg/dense.h"
 
 #include <math.h>
@@ -89,6 +90,47 @@ START_TEST(factor_and_solution)
 }
 END_TEST
 
+/* All lengths up to some vectors, so that the rows after the last whole vector count, too. */
+START_TEST(all_instruction_sets_give_the_same_bits)
+{
+    static const hf_block_band_kernels *const of_isa[] = {HF_LANE_EACH(&hf_block_band_kernels)};
+    enum { LD = 40 };
+    struct rng rng = rng_start((uint64_t)_i);
+    double w[HF_BLOCK * LD], a[HF_BLOCK * 2], x[LD], start[2 * LD];
+    for (int i = 0; i < HF_BLOCK * LD; i++)
+        w[i] = rng_uniform(&rng, -1, 1);
+    for (int i = 0; i < 2 * LD; i++)
+        start[i] = rng_uniform(&rng, -1, 1);
+    for (int i = 0; i < LD; i++)
+        x[i] = rng_uniform(&rng, -1, 1);
+    for (int i = 0; i < 2 * HF_BLOCK; i++)
+        a[i] = rng_uniform(&rng, -1, 1);
+    for (int n = 0; n <= LD; n++) {
+        double to[HF_LANE_N_ISA][2 * LD], one[HF_LANE_N_ISA][2 * LD], dot[HF_LANE_N_ISA][HF_BLOCK];
+        for (int isa = 0; isa < HF_LANE_N_ISA; isa++) {
+            if (!hf_lane_has_isa((hf_lane_isa)isa)) continue;
+            memcpy(to[isa], start, sizeof start);
+            memcpy(one[isa], start, sizeof start);
+            of_isa[isa]->subtract(2, n, w, LD, a, 2, to[isa], LD);
+            of_isa[isa]->subtract(1, n, w, LD, a, 2, one[isa], LD);
+            of_isa[isa]->dot(n, w, LD, x, dot[isa]);
+            ck_assert_mem_eq(to[isa], to[0], sizeof *to);
+            ck_assert_mem_eq(one[isa], to[0], LD * sizeof(double));
+            ck_assert_mem_eq(dot[isa], dot[0], sizeof *dot);
+        }
+        for (int r = 0; r < LD; r++) { /* and the right ones */
+            double left = start[r], sum = 0;
+            for (int k = 0; k < HF_BLOCK && r < n; k++)
+                left -= w[k * LD + r] * a[2 * k];
+            ck_assert_double_eq_tol(to[0][r], left, 1e-14);
+            for (int i = 0; r < HF_BLOCK && i < n; i++)
+                sum += w[r * LD + i] * x[i];
+            if (r < HF_BLOCK) ck_assert_double_eq_tol(dot[0][r], sum, 1e-13);
+        }
+    }
+}
+END_TEST
+
 START_TEST(a_singular_block_is_refused)
 {
     hf_block_band band;
@@ -113,6 +155,7 @@ Suite *suite_unit_block_band(void)
     Suite *suite = suite_create("unit/linalg/block_band");
     TCase *tcase = tcase_create("block_band");
     tcase_add_loop_test(tcase, factor_and_solution, 0, 60);
+    tcase_add_loop_test(tcase, all_instruction_sets_give_the_same_bits, 0, 5);
     tcase_add_test(tcase, a_singular_block_is_refused);
     suite_add_tcase(suite, tcase);
     return suite;
