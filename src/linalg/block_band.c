@@ -5,6 +5,7 @@
 #include "linalg/block_band.h"
 
 #include "linalg/block_band_kernel.h"
+#include "linalg/dense.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,21 +24,12 @@ void hf_block_band_clear(hf_block_band *m)
     memset(m->band, 0, (size_t)m->n * HF_BLOCK * (size_t)m->ld * sizeof *m->band);
 }
 
-/* Exchanges two rows. */
-static void exchange(double *a, double *b, int n)
-{
-    for (int c = 0; c < n; c++) {
-        double kept = a[c];
-        a[c] = b[c];
-        b[c] = kept;
-    }
-}
-
 /* Computes the inverse of a pivot block, of which rows and columns are first scaled to entries of at most 1. Returns
  * false if it is singular. */
 static bool invert(double p[HF_BLOCK][HF_BLOCK], double *inverse)
 {
-    double a[HF_BLOCK][2 * HF_BLOCK] = {{0}}, scale[HF_BLOCK];
+    double scaled[HF_BLOCK * HF_BLOCK], scale[HF_BLOCK];
+    int pivot[HF_BLOCK];
     for (int r = 0; r < HF_BLOCK; r++) {
         double most = 0;
         for (int c = 0; c < HF_BLOCK; c++)
@@ -45,29 +37,16 @@ static bool invert(double p[HF_BLOCK][HF_BLOCK], double *inverse)
         if (!(most > 0) || !isfinite(most)) return false;
         scale[r] = 1 / sqrt(most);
     }
-    for (int r = 0; r < HF_BLOCK; r++) {
-        for (int c = 0; c < HF_BLOCK; c++)
-            a[r][c] = scale[r] * p[r][c] * scale[c];
-        a[r][HF_BLOCK + r] = 1;
-    }
-    for (int k = 0; k < HF_BLOCK; k++) {
-        int pivot = k;
-        for (int r = k + 1; r < HF_BLOCK; r++)
-            if (fabs(a[r][k]) > fabs(a[pivot][k])) pivot = r;
-        if (!(fabs(a[pivot][k]) > 0)) return false;
-        exchange(a[k], a[pivot], 2 * HF_BLOCK);
-        double by = 1 / a[k][k];
-        for (int c = k; c < 2 * HF_BLOCK; c++)
-            a[k][c] *= by;
-        for (int r = 0; r < HF_BLOCK; r++) {
-            double times = a[r][k];
-            for (int c = k; c < 2 * HF_BLOCK && r != k; c++)
-                a[r][c] -= times * a[k][c];
+    for (int r = 0; r < HF_BLOCK; r++)
+        for (int c = 0; c < HF_BLOCK; c++) {
+            scaled[HF_BLOCK * c + r] = scale[r] * p[r][c] * scale[c];
+            inverse[HF_BLOCK * c + r] = r == c;
         }
-    }
+    if (hf_dense_factor(HF_BLOCK, scaled, pivot)) return false;
+    hf_dense_solve(HF_BLOCK, scaled, pivot, HF_BLOCK, inverse);
     for (int r = 0; r < HF_BLOCK; r++)
         for (int c = 0; c < HF_BLOCK; c++)
-            inverse[HF_BLOCK * r + c] = scale[r] * a[r][HF_BLOCK + c] * scale[c];
+            inverse[HF_BLOCK * c + r] *= scale[r] * scale[c];
     return true;
 }
 
@@ -85,18 +64,18 @@ hf_status hf_block_band_factor(hf_block_band *m)
     for (int j = 0; j < m->n; j++) {
         double *column = m->band + HF_BLOCK * (size_t)j * ld, *below = column + HF_BLOCK, *w = m->scratch;
         double *inverse = m->inverse + HF_BLOCK * HF_BLOCK * (size_t)j, pivot[HF_BLOCK][HF_BLOCK];
+        double minus[HF_BLOCK * HF_BLOCK];
         int n = rows_below(m, j);
         for (int r = 0; r < HF_BLOCK; r++)
             for (int c = 0; c < HF_BLOCK; c++)
                 pivot[r][c] = column[(size_t)c * ld + (size_t)r];
         if (!invert(pivot, inverse)) return HF_SINGULAR;
+        for (int k = 0; k < HF_BLOCK * HF_BLOCK; k++)
+            minus[k] = -inverse[k];
         for (int c = 0; c < HF_BLOCK; c++)
             memset(w + (size_t)c * ld, 0, (size_t)n * sizeof *w);
-        for (int c = 0; c < HF_BLOCK; c += 2) /* W becomes -A P^-1 */
-            kernels->subtract(2, n, below, ld, inverse + c, HF_BLOCK, w + (size_t)c * ld, ld);
-        for (int c = 0; c < HF_BLOCK; c++)
-            for (int r = 0; r < n; r++)
-                w[(size_t)c * ld + (size_t)r] = -w[(size_t)c * ld + (size_t)r];
+        for (int c = 0; c < HF_BLOCK; c += 2)
+            kernels->subtract(2, n, below, ld, minus + c, HF_BLOCK, w + (size_t)c * ld, ld);
         for (int i = 0; i < n; i += 2) {
             int first = i / HF_BLOCK * HF_BLOCK;
             double *to = m->band + (HF_BLOCK * (size_t)(j + 1) + (size_t)i) * ld;

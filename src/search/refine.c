@@ -50,8 +50,8 @@
 #define SCALES_MAX 12
 #define SCALE_WORSE 2 /* a factor that leads this much farther away is the last one in its direction */
 /* A tension within this relative distance of its bound counts as being at it. This is twice the distance that a step
- * keeps (LIMIT_INSIDE of watch.c). */
-#define LIMIT_INSIDE 2e-9
+ * keeps. */
+#define LIMIT_INSIDE (2 * HF_WATCH_INSIDE)
 #define LIMIT_ROUNDING 1e-12 /* a relative violation below this value is rounding [1e-14 to 1e-10] */
 #define BENDS_MAX 4          /* corrections of a step for the curvature of its residuals [2 to 4] */
 /* A step that gains more than this part of what it promises needs no such correction [0.65 to 0.75; 0.5 fails]. */
@@ -218,14 +218,10 @@ static double damped_scale(const hf_refine_problem *p, int r)
     return p->largest_scale > 0 ? p->largest_scale : 1;
 }
 
-/* Does the same as solve_step by the saddle-point system. f: NULL, or the residuals at the end of the last step, for
- * which the same model is solved again. */
+/* Does the same as solve_step by the saddle-point system, for a step between `down` and `up`. f: NULL, or the residuals
+ * at the end of the last step, for which the same model is solved again. */
 static hf_status solve_sparse(hf_refine_problem *p, double damping, const double *f, double *gain)
 {
-    for (int r = 0; r < p->n; r++) {
-        p->down[r] = p->low[r] - p->at[r];
-        p->up[r] = p->high[r] - p->at[r];
-    }
     hf_saddle_step_bend(&p->saddle, f);
     hf_saddle_step_limit(&p->saddle, &p->watch);
     return hf_saddle_step_solve(&p->saddle, damping, p->down, p->up, p->unit, p->step.side, p->step.x, gain);
@@ -237,12 +233,14 @@ static hf_status solve_step(hf_refine_problem *p, double damping, double *gain)
 {
     const double *x = p->step.x;
     int n = p->n, n_step = p->step.n;
+    for (int r = 0; r < n; r++) {
+        p->down[r] = p->low[r] - p->at[r];
+        p->up[r] = p->high[r] - p->at[r];
+    }
     if (p->is_sparse) return solve_sparse(p, damping, NULL, gain);
     for (int r = 0; r < n; r++) {
         memcpy(p->hessian + r * n_step, p->gram + r * n, (size_t)(r + 1) * sizeof(double));
         p->hessian[r * n_step + r] += damping * damped_scale(p, r) * damped_scale(p, r);
-        p->down[r] = p->low[r] - p->at[r];
-        p->up[r] = p->high[r] - p->at[r];
     }
     if (p->has_corners) begin_level(p);
     HF_TRY(hf_quadratic_solve(&p->step, p->hessian, p->gradient, p->down, p->up, worst_limit, p));

@@ -22,7 +22,6 @@
 #include "solve/schur.h"
 
 #include <math.h>
-
 #include <string.h>
 
 #define SETS_MAX 30        /* maximum number of active sets of a step */
@@ -30,7 +29,6 @@
 #define ROUNDING 1e-12     /* a violation below this part of the magnitude is rounding */
 #define KRYLOV_END 1e-10   /* relative residual at which GMRES ends */
 #define KRYLOV_ENOUGH 1e-9 /* the step fails if it is larger after HF_SADDLE_KRYLOV solves */
-#define LIMIT_INSIDE 1e-9  /* as in watch.c */
 #define REFINEMENTS 1      /* steps of iterative refinement of each solve */
 
 /* ---- making ---- */
@@ -71,7 +69,7 @@ hf_status hf_saddle_step_create(const hf_evaluator *v, int n_row, hf_saddle_step
 {
     const hf_model *m = v->model;
     size_t n_dof = HF_BLOCK * (size_t)m->n_free, n_held = HF_BLOCK * (size_t)m->n_attachment;
-    *to = (hf_saddle_step){.v = v, .n_row = n_row};
+    *to = (hf_saddle_step){.v = v, .n_row = n_row, .n_rows = n_objective(v)};
     for (int k = 0; k < n_objective(v); k++)
         if (figure_of(v, k) == HF_FIGURE_EVENNESS) to->border += 2;
     HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_SADDLE_STEP_FIELDS(HF_ARENA_ITEM)));
@@ -91,19 +89,11 @@ void hf_saddle_step_free(hf_saddle_step *s)
 
 /* ---- model ---- */
 
-/* The rows of one objective in the model. The rate of row i is `part` times dT of a cable, minus for evenness
- * `of_mean` T times the change of the mean tension; or `part` times a displacement. */
-typedef struct {
-    hf_figure_kind figure;
-    int first_row, n, border;
-    const int *index; /* [n] cables, or rows of nodes */
-    double part, of_mean;
-} rows;
-
-static rows rows_of(const hf_saddle_step *s, int k)
+/* Returns the rows of objective k at the tensions of the cables. */
+static hf_saddle_rows rows_of(const hf_saddle_step *s, int k)
 {
     const hf_model *m = s->v->model;
-    rows r = {.figure = figure_of(s->v, k), .n = m->n_inner_node, .index = m->inner_row};
+    hf_saddle_rows r = {.figure = figure_of(s->v, k), .n = m->n_inner_node, .index = m->inner_row};
     double weight = 1, mean = 0;
     for (int i = 0; s->v->objectives && i < k; i++) {
         r.first_row += s->v->objectives->objective[i].n_row;
@@ -121,6 +111,10 @@ static rows rows_of(const hf_saddle_step *s, int k)
     mean /= r.n;
     r.part /= mean;
     r.of_mean = r.part / mean;
+    for (int i = 0; i < r.n; i++) {
+        double of_mean = r.of_mean * s->cable[r.index[i]].tension_N;
+        r.square += of_mean * of_mean;
+    }
     return r;
 }
 
@@ -129,20 +123,20 @@ void hf_saddle_step_linearise(hf_saddle_step *s, const hf_workspace *w, const do
     const hf_model *m = s->v->model;
     for (int e = 0; e < m->n_cable; e++) {
         hf_saddle_cable *c = &s->cable[e];
-        c->length_m = hf_newton_matrix_direction(m, w->position_m, e, c->unit);
+        double length_m = hf_newton_matrix_direction(m, w->position_m, e, c->unit);
         c->tension_N = w->tension_N[e];
-        c->across = c->tension_N / c->length_m;
-        c->along = hf_newton_matrix_stiffness(hf_workspace_cable(m, w, e), c->length_m, c->tension_N);
+        c->across = c->tension_N / length_m;
+        c->along = hf_newton_matrix_stiffness(hf_workspace_cable(m, w, e), length_m, c->tension_N);
         c->direct = 0;
-        if (c->variable >= 0) c->direct = c->length_m / hf_evaluate_divisor(s->v, c->variable);
+        if (c->variable >= 0) c->direct = length_m / hf_evaluate_divisor(s->v, c->variable);
         c->curvature = 0;
     }
     memset(s->weight, 0, (size_t)m->n_free * sizeof *s->weight);
     memset(s->coefficient, 0, (size_t)s->border * (size_t)m->n_cable * sizeof *s->coefficient);
     memcpy(s->base, f, (size_t)s->n_row * sizeof *f);
     hf_saddle_step_bend(s, NULL);
-    for (int k = 0; k < n_objective(s->v); k++) {
-        rows r = rows_of(s, k);
+    for (int k = 0; k < s->n_rows; k++) {
+        hf_saddle_rows r = s->rows[k] = rows_of(s, k);
         double *of_mean = s->coefficient + (size_t)r.border * (size_t)m->n_cable, *mean = of_mean + m->n_cable;
         for (int i = 0; i < r.n; i++) {
             int at = r.index[i];
@@ -195,7 +189,7 @@ void hf_saddle_step_limit(hf_saddle_step *s, const hf_watch *watch)
         const hf_watched *t = &watch->item[i];
         if (t->cable < 0) continue;
         hf_saddle_cable *c = &s->cable[t->cable];
-        double inside = LIMIT_INSIDE * fabs(t->value);
+        double inside = HF_WATCH_INSIDE * fabs(t->value);
         c->low = fmax(c->low, t->from + inside - t->value - t->bend);
         c->high = fmin(c->high, t->to - inside - t->value - t->bend);
     }
@@ -268,14 +262,10 @@ static void multiply(hf_saddle_step *s)
     for (int i = 0; i < m->n_free; i++)
         for (int c = 0; c < 3; c++)
             s->product[6 * i + c] += s->weight[i] * s->all[6 * i + c];
-    for (int k = 0; k < n_objective(s->v); k++) {
-        rows r = rows_of(s, k);
+    for (int k = 0; k < s->n_rows; k++) {
+        hf_saddle_rows r = s->rows[k];
         if (r.figure != HF_FIGURE_EVENNESS) continue;
-        for (int i = 0; i < r.n; i++) {
-            double of_mean = r.of_mean * s->cable[r.index[i]].tension_N;
-            s->border_product[r.border] += of_mean * of_mean * y[r.border];
-        }
-        s->border_product[r.border] += y[r.border + 1];
+        s->border_product[r.border] += r.square * y[r.border] + y[r.border + 1];
         s->border_product[r.border + 1] += y[r.border];
     }
 }
@@ -289,8 +279,8 @@ static void find_right(hf_saddle_step *s)
     memset(s->border_start, 0, (size_t)s->border * sizeof *s->border_start);
     for (int e = 0; e < m->n_cable; e++)
         s->cable[e].slope = 0;
-    for (int k = 0; k < n_objective(s->v); k++) {
-        rows r = rows_of(s, k);
+    for (int k = 0; k < s->n_rows; k++) {
+        hf_saddle_rows r = s->rows[k];
         const double *f = s->residual + r.first_row;
         for (int i = 0; i < r.n; i++) {
             if (r.figure == HF_FIGURE_PSI) {
@@ -360,17 +350,15 @@ static double *border_column(const hf_saddle_step *s, int k)
     return s->column + (size_t)(s->border + k) * 6 * (size_t)s->v->model->n_free;
 }
 
-/* Assembles and factors the matrix of the free nodes and the border. Returns HF_OK or HF_SINGULAR. */
+/* Assembles and factors the matrix of the free nodes and the border, from which the variables are eliminated. Returns
+ * HF_OK or HF_SINGULAR. */
 static hf_status factor(hf_saddle_step *s)
 {
     const hf_model *m = s->v->model;
     size_t n_dof = 6 * (size_t)m->n_free, border = (size_t)s->border;
-    for (int e = 0; e < m->n_cable; e++) {
+    for (int e = 0; e < m->n_cable; e++)
         s->cable[e].factored_side = s->cable[e].side;
-        eliminate(&s->cable[e]);
-    }
     assemble(s);
-    s->factors++;
     HF_TRY(hf_block_band_factor(&s->matrix));
     memset(s->all, 0, 6 * (size_t)m->n_node * sizeof *s->all);
     memset(s->border_value, 0, border * sizeof *s->border_value);
@@ -587,8 +575,8 @@ static bool change_set(hf_saddle_step *s, int n_set)
 static double find_rates(hf_saddle_step *s)
 {
     double gain = 0;
-    for (int k = 0; k < n_objective(s->v); k++) {
-        rows r = rows_of(s, k);
+    for (int k = 0; k < s->n_rows; k++) {
+        hf_saddle_rows r = s->rows[k];
         double *rate = s->rate + r.first_row;
         for (int i = 0; i < r.n; i++) {
             int at = r.index[i];
@@ -607,17 +595,21 @@ static double find_rates(hf_saddle_step *s)
     return gain;
 }
 
-/* Returns true if the factor belongs to another active set, and otherwise eliminates the variables with their present
- * limits. */
-static bool has_new_side(hf_saddle_step *s)
+/* Eliminates the variables with their present limits, and factors unless the factor is that of this damping and of the
+ * same kinds of limits. Returns HF_OK or HF_SINGULAR. */
+static hf_status prepare(hf_saddle_step *s, double damping)
 {
-    bool found = false;
+    bool is_factored = damping == s->factored_damping;
     for (int e = 0; e < s->v->model->n_cable; e++) {
         hf_saddle_cable *c = &s->cable[e];
-        found |= c->side != c->factored_side && (c->side * c->side != c->factored_side * c->factored_side);
+        is_factored &= c->side * c->side == c->factored_side * c->factored_side;
         eliminate(c);
     }
-    return found;
+    if (is_factored) return HF_OK;
+    s->factored_damping = -1; /* until there is a factor */
+    HF_TRY(factor(s));
+    s->factored_damping = damping;
+    return HF_OK;
 }
 
 hf_status hf_saddle_step_solve(hf_saddle_step *s, double damping, const double *down, const double *up,
@@ -638,11 +630,9 @@ hf_status hf_saddle_step_solve(hf_saddle_step *s, double damping, const double *
         double held[] = {c->low, c->down, 0, c->up, c->high};
         if (!isfinite(held[2 + c->side])) c->side = 0;
     }
-    bool changes = true, is_new = damping != s->factored_damping;
+    bool changes = true;
     for (int n = 0; changes && n < SETS_MAX; n++) {
-        if (is_new || has_new_side(s)) HF_TRY(factor(s));
-        is_new = false;
-        s->factored_damping = damping;
+        HF_TRY(prepare(s, damping));
         find_right(s);
         HF_TRY(solve_all(s));
         for (int e = 0; e < m->n_cable; e++) {

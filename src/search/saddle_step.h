@@ -14,7 +14,7 @@
 /* A cable in the model. The change of its tension is dT = direct x + along d, where x is the step of its variable and d
  * the change of its length. */
 typedef struct {
-    double unit[3], length_m, tension_N;
+    double unit[3], tension_N;
     double across, along, direct; /* N/m, N/m, N per unit of the variable */
     int variable;                 /* design variable, or -1 */
     double curvature, slope;      /* of the objectives by dT */
@@ -28,9 +28,20 @@ typedef struct {
     double x, change_N;           /* the step: x and dT */
 } hf_saddle_cable;
 
+/* The rows of one objective in the model. The rate of row i is `part` times dT of a cable, minus for evenness
+ * `of_mean` T times the change of the mean tension; or `part` times a displacement. */
+typedef struct {
+    hf_figure_kind figure;
+    int first_row, n, border;
+    const int *index; /* [n] cables, or rows of nodes */
+    double part, of_mean;
+    double square; /* sum of the squares of of_mean T */
+} hf_saddle_rows;
+
 /* The arrays of hf_saddle_step for a model m. */
 #define HF_SADDLE_STEP_FIELDS(X)                                                                                       \
     X(hf_saddle_cable, cable, m->n_cable, "all cables")                                                                \
+    X(hf_saddle_rows, rows, to->n_rows, "the objectives, or psi")                                                      \
     X(double, weight, m->n_free, "curvature of the objectives by the displacement of a free node")                     \
     X(double, stiffness, m->n_free, "scratch: sum of the force densities at a node")                                   \
     X(double, coefficient, (size_t)to->border *(size_t)m->n_cable, "[border][n_cable] couples dT and the border")      \
@@ -57,10 +68,9 @@ typedef struct {
 typedef struct {
     const hf_evaluator *v; /* borrowed */
     int border;            /* two unknowns for each objective of evenness: mean tension and its multiplier */
-    int n_row;             /* residuals */
+    int n_row, n_rows;     /* residuals, and objectives to which they belong */
     HF_SADDLE_STEP_FIELDS(HF_ARENA_MEMBER)
     hf_block_band matrix;
-    int factors;             /* factorisations so far */
     double factored_damping; /* damping of the factor; -1: none */
     void *block;
 } hf_saddle_step;

@@ -16,9 +16,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
-#define LIMIT_INSIDE 1e-9 /* relative distance that a step keeps from its limits [1e-11; 1e-7 fails] */
-
 /* ---- items ---- */
 
 /* An item without an index and without a limit. */
@@ -335,7 +332,7 @@ void hf_watch_extremes(const hf_watch *q, int k, const double *value, int *low, 
  * by more than *worst, writes it to *limit, updates *worst and returns true. */
 static bool breaks_cap(const hf_watch *q, int k, double *worst, hf_quadratic_limit *limit)
 {
-    double cap = q->aim[k] * (1 - LIMIT_INSIDE);
+    double cap = q->aim[k] * (1 - HF_WATCH_INSIDE);
     int i_low, i_high;
     hf_watch_extremes(q, k, q->predicted, &i_low, &i_high);
     if (i_low < 0 || !isfinite(cap)) return false;
@@ -393,8 +390,8 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
     predict(q, x);
     for (int i = 0; i < q->n; i++) {
         const hf_watched *t = &q->item[i];
-        double below = (t->from + LIMIT_INSIDE * t->unit - t->predicted) / t->unit;
-        double above = (t->predicted - t->to + LIMIT_INSIDE * t->unit) / t->unit;
+        double below = (t->from + HF_WATCH_INSIDE * t->unit - t->predicted) / t->unit;
+        double above = (t->predicted - t->to + HF_WATCH_INSIDE * t->unit) / t->unit;
         if (!(fmax(below, above) > worst)) continue;
         worst = fmax(below, above);
         sign = below > above ? 1 : -1;
@@ -404,7 +401,7 @@ bool hf_watch_worst(hf_watch *q, const double *x, double worst, hf_quadratic_lim
         if (breaks_cap(q, k, &worst, limit)) is_broken = true;
     if (q->front && breaks_level(q, x, &worst, limit)) is_broken = true;
     if (is_broken || !held) return is_broken;
-    double inside = LIMIT_INSIDE * held->unit, bound = sign > 0 ? held->from : held->to;
+    double inside = HF_WATCH_INSIDE * held->unit, bound = sign > 0 ? held->from : held->to;
     for (int j = 0; j < q->n_class; j++)
         limit->normal[j] = sign * rate_of(q, held, j);
     limit->bound = sign * (bound - held->value - held->bend) + inside;

@@ -5,6 +5,8 @@
  * breaks a limit is solved again. */
 #pragma once
 
+#define HF_WATCH_INSIDE 1e-9 /* relative distance that a step keeps from its limits [1e-11; 1e-7 fails] */
+
 #include "linalg/quadratic.h"
 #include "search/sensitivity.h"
 

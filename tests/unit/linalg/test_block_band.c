@@ -11,7 +11,7 @@
 
 enum { MAX_BLOCKS = 9, MAX_N = HF_BLOCK * MAX_BLOCKS };
 
-/* Returns B with B B' for a random band B: the sum of the blocks of pairs of nodes, which is positive definite. */
+/* Sums random positive definite springs between near nodes and to the ground. The sum is positive definite. */
 static void draw_spd(int n, int width, double *a, struct rng *rng)
 {
     memset(a, 0, MAX_N * MAX_N / 4 * sizeof *a);
