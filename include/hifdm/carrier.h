@@ -13,13 +13,14 @@ HF_API_BEGIN
 /* A carrier is the truss that carries a net. Attachment k connects support scene_node[k] of the net with node
  * truss_node[k] of the truss. */
 typedef struct {
-    hf_truss truss;               /* the truss, owned */
-    hf_frame frame;               /* the factored stiffness matrix of the truss */
-    double mass_kg;               /* mass of the members and hinges */
-    int n_attachment;             /* number of attachments, called a below */
-    int *scene_node, *truss_node; /* [n_attachment] nodes of the scene and of the truss */
-    double *flexibility_m_per_N;  /* [3a][3a] symmetric; 3*k+c is the row and column of attachment k along c */
-    void *block;                  /* owned memory behind the arrays */
+    hf_truss truss;                /* the truss, owned */
+    hf_frame frame;                /* the factored stiffness matrix of the truss */
+    double mass_kg;                /* mass of the members and hinges */
+    int n_attachment;              /* number of attachments, called a below */
+    int *scene_node, *truss_node;  /* [n_attachment] nodes of the scene and of the truss */
+    double *flexibility_m_per_N;   /* [3a][3a] symmetric; 3*k+c is the row and column of attachment k along c */
+    hf_stiffness_blocks stiffness; /* of the truss; the attachments come first */
+    void *block;                   /* owned memory behind the arrays */
 } hf_carrier;
 
 /* Builds the carrier from a truss and the scene of the net on this truss. The truss and the scene must already be

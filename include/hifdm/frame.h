@@ -7,6 +7,7 @@
  *   hf_frame_solve       loads, settlements, temperatures -> displacements; two triangular solves for each load case
  *   hf_frame_reactions, hf_frame_member_forces, hf_frame_strain_energy   displacements -> forces, energy
  *   hf_frame_condense    Cholesky factor -> flexibility of selected nodes
+ *   hf_frame_blocks      members -> stiffness matrix by blocks
  *
  * A member is a spatial beam with 12 degrees of freedom (METHOD section 8), or it carries only axial force. Beams
  * follow the Euler-Bernoulli theory or the Timoshenko theory. The stiffness matrix is stored as a lower band in the
@@ -17,6 +18,7 @@
 #pragma once
 
 #include <hifdm/api.h>
+#include <hifdm/model.h>
 #include <hifdm/truss.h>
 
 HF_API_BEGIN
@@ -91,5 +93,10 @@ double hf_frame_strain_energy(const hf_frame *frame, const hf_frame_load *load, 
  * the flexibility matrix belongs to a unit force on node[k] along axis d. The flexibility matrix is exactly symmetric.
  * Returns HF_OK or HF_NO_MEMORY. */
 hf_status hf_frame_condense(const hf_frame *frame, int n_point, const int *node, double *flexibility_m_per_N);
+
+/* Computes the stiffness matrix of the truss by blocks. The first n_point blocks are the translations of the nodes in
+ * the array `node`. The blocks of the other translations and of the rotations follow. If two of the n_point nodes are
+ * the same node, to->n is 0. The owner frees to->memory with free. Returns HF_OK or HF_NO_MEMORY. */
+hf_status hf_frame_blocks(const hf_frame *frame, int n_point, const int *node, hf_stiffness_blocks *to);
 
 HF_API_END

@@ -38,6 +38,22 @@ typedef struct {
     bool scales;         /* the design variables of the row change by the same factor (link: scale) */
 } hf_variable;
 
+/* A block of a symmetric matrix: row >= column belongs to the rows 3*row to 3*row+2 of the matrix. */
+typedef struct {
+    int row, column;
+    double entry[3][3];
+} hf_stiffness_block;
+
+/* Contains the stiffness matrix of a truss as a sum of blocks. A block with row > column also stands for its transpose
+ * above the diagonal. The first blocks are the translations of the attachments. */
+typedef struct {
+    int n, n_block;            /* the matrix has 3 n rows; number of blocks */
+    hf_stiffness_block *block; /* [n_block] N/m, N and N m */
+    bool *is_held;             /* [n][3] the row belongs to a fixed degree of freedom and has no entry */
+    double *position_m;        /* [n][3] node of each three rows */
+    void *memory;              /* owned memory behind the arrays */
+} hf_stiffness_blocks;
+
 /* Contains a scene that is prepared for solving. In this struct, "row" means the index of a node in the model. */
 typedef struct {
     /* n_free: nodes that are not supports; n_inner_node: nodes that psi includes */
@@ -98,8 +114,10 @@ typedef struct {
     int n_attachment, n_tie;     /* number of attachments, and number of cable ends at attachments */
     int *attachment_row;         /* [n_attachment] rows n_free + i, in the order of the flexibility */
     double *flexibility_m_per_N; /* [3 n_attachment][3 n_attachment] symmetric; NULL without a truss */
-    int *tie;                    /* [n_tie] cable ends at attachments, as 2*cable + end (0 or 1), sorted by cable */
-    int *tie_attachment;         /* [n_tie] attachment of each cable end */
+    /* stiffness matrix of the truss, borrowed; NULL: unknown, so that only F is used */
+    const hf_stiffness_blocks *truss_stiffness;
+    int *tie;            /* [n_tie] cable ends at attachments, as 2*cable + end (0 or 1), sorted by cable */
+    int *tie_attachment; /* [n_tie] attachment of each cable end */
 
     void *block, *attachment_block, *variable_block; /* owned memory behind the arrays */
 } hf_model;

@@ -205,6 +205,7 @@ static void make_parts(hf_problem *p, const volatile sig_atomic_t *stop, hf_mate
         const hf_carrier *t = &p->carrier;
         has_truss =
             keep(hf_model_attach(&p->model, t->n_attachment, t->scene_node, t->flexibility_m_per_N, messages), first);
+        p->model.truss_stiffness = t->stiffness.n > 0 ? &t->stiffness : NULL;
         if (c->has_optimize) hf_model_want_newton(&p->model);
     }
     const hf_truss *truss = c->has_truss ? &p->carrier.truss : NULL;

@@ -24,6 +24,7 @@ static hf_status attach(double tolerance_m, const hf_scene *scene, hf_carrier *c
         HF_TRY(
             hf_truss_attach(&c->truss, scene, tolerance_m, &c->n_attachment, c->scene_node, c->truss_node, messages));
         status = hf_frame_condense(&c->frame, c->n_attachment, c->truss_node, c->flexibility_m_per_N);
+        if (status == HF_OK) status = hf_frame_blocks(&c->frame, c->n_attachment, c->truss_node, &c->stiffness);
     }
     if (status == HF_OK) return HF_OK;
     return hf_error(messages, status, "out of memory for a truss with %zu attachments", n_support);
@@ -41,6 +42,7 @@ hf_status hf_carrier_build(hf_truss *truss, double match_tolerance_m, const hf_s
 
 void hf_carrier_free(hf_carrier *carrier)
 {
+    hf_arena_free_block(carrier->stiffness.memory);
     hf_arena_free_block(carrier->block);
     hf_frame_free(&carrier->frame);
     hf_truss_free(&carrier->truss);

@@ -5,9 +5,10 @@
  *     load case: settlements, temperatures, forces -> forces out of balance -> back substitution -> displacements
  *       -> reactions, member end forces, strain energy
  *     condensation: unit forces at the attachments -> back substitution -> flexibility
+ *     blocks: stiffness of members -> blocks of three degrees of freedom
  *
  * Contents: members - layout - dofs and numbering - assembly - mechanisms - build - load cases - from
- * displacements - condensation */
+ * displacements - condensation - blocks */
 #include <hifdm/frame.h>
 
 #include "base/arena.h"
@@ -215,30 +216,39 @@ static int find_half_bandwidth(const hf_frame *f, const int *row_of_dof)
 
 /* ---- assembly ---- */
 
+/* Sets k [12][12] to the stiffness matrix of a member in the axes of the truss. */
+static void stiffness_of(const hf_frame *f, int e, double k[12][12])
+{
+    double b[N_DEFORMATION][12];
+    int n = f->truss->joint[e] == HF_JOINT_PINNED ? 1 : N_DEFORMATION;
+    deformation_matrix(f, e, b);
+    for (int j = 0; j < 12; j++) {
+        double column[N_DEFORMATION], q[N_DEFORMATION];
+        for (int d = 0; d < N_DEFORMATION; d++)
+            column[d] = b[d][j];
+        resist(f->stiffness + N_DEFORMATION * (size_t)e, column, q);
+        for (int i = 0; i < 12; i++) {
+            k[i][j] = 0;
+            for (int d = 0; d < n; d++)
+                k[i][j] += b[d][i] * q[d];
+        }
+    }
+}
+
 static void assemble(const hf_frame *f, double *band)
 {
     const hf_truss *t = f->truss;
     size_t width = (size_t)f->half_bandwidth + 1;
     memset(band, 0, (size_t)f->n_dof * width * sizeof *band);
     for (int e = 0; e < t->n_member; e++) {
-        double b[N_DEFORMATION][12];
-        int n = t->joint[e] == HF_JOINT_PINNED ? 1 : N_DEFORMATION, row[12];
+        double k[12][12];
+        int row[12];
+        stiffness_of(f, e, k);
         rows_of_member(f, f->row_of_dof, e, row);
-        deformation_matrix(f, e, b);
-        for (int j = 0; j < 12; j++) {
-            if (row[j] < 0) continue;
-            double column[N_DEFORMATION], q[N_DEFORMATION];
-            for (int d = 0; d < N_DEFORMATION; d++)
-                column[d] = b[d][j];
-            resist(f->stiffness + N_DEFORMATION * (size_t)e, column, q);
-            for (int i = 0; i < 12; i++) {
-                if (row[i] < row[j]) continue; /* above the diagonal, or fixed, or absent */
-                double sum = 0;
-                for (int d = 0; d < n; d++)
-                    sum += b[d][i] * q[d];
-                band[(size_t)(row[i] - row[j]) + (size_t)row[j] * width] += sum;
-            }
-        }
+        for (int j = 0; j < 12; j++)
+            for (int i = 0; i < 12 && row[j] >= 0; i++)
+                if (row[i] >= row[j]) /* not above the diagonal, nor fixed, nor absent */
+                    band[(size_t)(row[i] - row[j]) + (size_t)row[j] * width] += k[i][j];
     }
 }
 
@@ -516,4 +526,73 @@ hf_status hf_frame_condense(const hf_frame *f, int n_point, const int *node, dou
             *a = *b = (*a + *b) / 2; /* equal but for rounding (Maxwell) */
         }
     return HF_OK;
+}
+
+/* ---- blocks ---- */
+
+/* Numbers the blocks: the translations of the points, of the other nodes, then the rotations. Returns their number, or
+ * 0 if two points are the same node. */
+static int number_blocks(const hf_frame *f, int n_point, const int *node, int *block_of)
+{
+    const hf_truss *t = f->truss;
+    int n = n_point;
+    for (int k = 0; k < 2 * t->n_node; k++)
+        block_of[k] = -1;
+    for (int k = 0; k < n_point; k++) {
+        if (block_of[2 * node[k]] >= 0) return 0;
+        block_of[2 * node[k]] = k;
+    }
+    for (int i = 0; i < t->n_node; i++)
+        if (block_of[2 * i] < 0) block_of[2 * i] = n++;
+    for (int i = 0; i < t->n_node; i++) {
+        bool turns = false;
+        for (int c = 3; c < HF_TRUSS_DOF; c++)
+            turns |= f->row_of_dof[HF_TRUSS_DOF * i + c] != HF_FRAME_ABSENT;
+        if (turns) block_of[2 * i + 1] = n++;
+    }
+    return n;
+}
+
+/* Adds the blocks of a member. Fixed degrees of freedom have no entries. */
+static void add_member(const hf_frame *f, int e, const int *block_of, hf_stiffness_blocks *to)
+{
+    double k[12][12];
+    int row[12], part[4];
+    stiffness_of(f, e, k);
+    rows_of_member(f, f->row_of_dof, e, row);
+    for (int i = 0; i < 4; i++)
+        part[i] = block_of[2 * f->truss->end[2 * e + i / 2] + i % 2];
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j <= i; j++) {
+            if (part[i] < 0 || part[j] < 0) continue;
+            hf_stiffness_block *b = &to->block[to->n_block++];
+            b->row = part[i];
+            b->column = part[j];
+            for (int r = 0; r < 3; r++)
+                for (int c = 0; c < 3; c++)
+                    b->entry[r][c] = row[3 * i + r] < 0 || row[3 * j + c] < 0 ? 0 : k[3 * i + r][3 * j + c];
+        }
+}
+
+hf_status hf_frame_blocks(const hf_frame *f, int n_point, const int *node, hf_stiffness_blocks *to)
+{
+    const hf_truss *t = f->truss;
+    size_t n_node = (size_t)t->n_node;
+    int *block_of;
+    void *scratch;
+    *to = (hf_stiffness_blocks){0};
+    HF_TRY(HF_ARENA_ARRAYS(&scratch, HF_ARRAY(block_of, 2 * n_node)));
+    to->n = number_blocks(f, n_point, node, block_of);
+    hf_status status =
+        HF_ARENA_ARRAYS(&to->memory, HF_ARRAY(to->block, 10 * (size_t)t->n_member),
+                        HF_ARRAY(to->is_held, 3 * (size_t)to->n), HF_ARRAY(to->position_m, 3 * (size_t)to->n));
+    for (int e = 0; status == HF_OK && to->n > 0 && e < t->n_member; e++)
+        add_member(f, e, block_of, to);
+    for (int i = 0; status == HF_OK && to->n > 0 && i < 2 * t->n_node; i++)
+        for (int c = 0; c < 3 && block_of[i] >= 0; c++) {
+            to->is_held[3 * (ptrdiff_t)block_of[i] + c] = f->row_of_dof[3 * i + c] < 0;
+            to->position_m[3 * (ptrdiff_t)block_of[i] + c] = t->position_m[3 * (ptrdiff_t)(i / 2) + c];
+        }
+    hf_arena_free_block(scratch);
+    return status;
 }

@@ -2,6 +2,8 @@
  * the assembled matrix times its condition number, which stays below 1e7 here: 1e-8 of the largest of its kind. */
 #include "trusses.h"
 
+#include "base/arena.h"
+
 #define TRIALS 60
 #define TOLERANCE 1e-8
 
@@ -168,6 +170,69 @@ START_TEST(flexibility)
     free(force);
     free(u);
     free(work);
+    hf_frame_free(&frame);
+    hf_truss_free(&t);
+}
+END_TEST
+
+/* The stiffness matrix by blocks, times the displacements under random forces, is those forces. Rows of supports have
+ * no entry. A point given twice has no matrix. */
+START_TEST(blocks)
+{
+    struct rng rng = rng_start((uint64_t)_i);
+    hf_truss t;
+    hf_frame frame;
+    hf_stiffness_blocks k;
+    struct loads l;
+    struct solved s;
+    random_truss(&t, &rng);
+    build_frame(&t, &frame);
+    random_loads(&l, &t, &rng);
+    l.load.settlement = l.load.temperature_K = NULL;
+    solve_truss(&t, &l.load, &s);
+    int node[2] = {t.n_node - 1, rng_int(&rng, 0, t.n_node - 2)}, n = 2,
+        *first = calloc(2 * (size_t)t.n_node, sizeof *first);
+    ck_assert_int_eq(hf_frame_blocks(&frame, 2, node, &k), HF_OK);
+    first[0] = 6 * node[0]; /* the first of the three dofs of each block */
+    first[1] = 6 * node[1];
+    for (int turn = 0; turn < 2; turn++)
+        for (int i = 0; i < t.n_node; i++) {
+            int dof = 6 * i + 3 * turn;
+            bool is_point = turn == 0 && (i == node[0] || i == node[1]);
+            if (is_point ||
+                (turn == 1 && frame.row_of_dof[dof] == HF_FRAME_ABSENT &&
+                 frame.row_of_dof[dof + 1] == HF_FRAME_ABSENT && frame.row_of_dof[dof + 2] == HF_FRAME_ABSENT))
+                continue;
+            first[n++] = dof;
+        }
+    ck_assert_int_eq(k.n, n);
+    double *force = zeros(6 * (size_t)t.n_node), most = largest(6 * t.n_node, l.force);
+    for (int b = 0; b < k.n_block; b++) {
+        const hf_stiffness_block *block = &k.block[b];
+        for (int i = 0; i < 9; i++) {
+            int row = first[block->row] + i / 3, column = first[block->column] + i % 3;
+            double entry = block->entry[i / 3][i % 3];
+            if (k.is_held[3 * block->row + i / 3] || k.is_held[3 * block->column + i % 3])
+                ck_assert_double_eq(entry, 0);
+            force[row] += entry * s.displacement[column];
+            if (block->row != block->column) force[column] += entry * s.displacement[row];
+        }
+    }
+    for (int i = 0; i < 3 * n; i++) {
+        int dof = first[i / 3] + i % 3;
+        ck_assert_int_eq(k.is_held[i], frame.row_of_dof[dof] < 0);
+        if (!k.is_held[i]) ck_assert_double_eq_tol(force[dof], l.force[dof], TOLERANCE * most);
+        if (i % 3 == 0) ck_assert_mem_eq(k.position_m + i, t.position_m + 3 * (dof / 6), 3 * sizeof(double));
+    }
+    hf_arena_free_block(k.memory);
+    node[1] = node[0];
+    ck_assert_int_eq(hf_frame_blocks(&frame, 2, node, &k), HF_OK);
+    ck_assert_int_eq(k.n, 0);
+    hf_arena_free_block(k.memory);
+    free(first);
+    free(force);
+    free_solved(&s);
+    free_loads(&l);
     hf_frame_free(&frame);
     hf_truss_free(&t);
 }
@@ -355,6 +420,7 @@ Suite *suite_property_frame(void)
     tcase_add_loop_test(tests, rigid_motion_strains_nothing, 0, TRIALS);
     tcase_add_loop_test(tests, energy_and_superposition, 0, TRIALS);
     tcase_add_loop_test(tests, flexibility, 0, TRIALS);
+    tcase_add_loop_test(tests, blocks, 0, TRIALS);
     tcase_add_loop_test(tests, renumbering_changes_nothing, 0, TRIALS);
     tcase_add_loop_test(tests, rotation_turns_everything, 0, TRIALS);
     tcase_add_loop_test(tests, stiff_in_shear_is_euler_bernoulli, 0, TRIALS);
