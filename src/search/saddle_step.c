@@ -1,7 +1,7 @@
 /* Solves steps of Levenberg-Marquardt by one sparse saddle-point system. saddle_step.h describes the interface.
  *
  *     cables, residuals -> for each cable: eliminate its variable -> blocks of 6 x 6 -> factor
- *         -> border of the mean tensions -> attachments to the truss by GMRES -> steps of the variables
+ *         -> border of the mean tensions -> steps of the variables
  *         -> limits violated, or held without need? -> change the active set, factor again
  *
  * With displacements d, multipliers m of equilibrium and y of the border, a cable with the relative vectors d and m
@@ -13,23 +13,22 @@
  *
  *     dd d^2/2 + dm d v - mm v^2/2 + m v + d d + across (m.d - m d),  v = g + c'y + m.
  *
- * Contents: making - model - products - solves - attachments - active set - the step */
+ * A truss with displacements d and multipliers m has the energy m'K d.
+ *
+ * Contents: making - model - products - solves - active set - the step */
 #include "search/saddle_step.h"
 
 #include "linalg/dense.h"
 #include "linalg/dot.h"
 #include "solve/newton_matrix.h"
-#include "solve/schur.h"
 
 #include <math.h>
 #include <string.h>
 
-#define SETS_MAX 30        /* maximum number of active sets of a step */
-#define ALL_AT_ONCE 8      /* sets after which only the worst limits change */
-#define ROUNDING 1e-12     /* a violation below this part of the magnitude is rounding */
-#define KRYLOV_END 1e-10   /* relative residual at which GMRES ends */
-#define KRYLOV_ENOUGH 1e-9 /* the step fails if it is larger after HF_SADDLE_KRYLOV solves */
-#define REFINEMENTS 1      /* steps of iterative refinement of each solve */
+#define SETS_MAX 12    /* maximum number of active sets of a step */
+#define ALL_AT_ONCE 8  /* sets after which only the worst limits change */
+#define ROUNDING 1e-12 /* a violation below this part of the magnitude is rounding */
+#define REFINEMENTS 1  /* steps of iterative refinement of each solve */
 
 /* ---- making ---- */
 
@@ -47,7 +46,7 @@ bool hf_saddle_step_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
     if (v->objectives && (v->objectives->nets || v->objectives->constraints)) return false;
-    if (m->n_leader != m->n_variable || m->has_strut) return false;
+    if (m->n_leader != m->n_variable || m->has_strut || (m->n_attachment && !m->truss_stiffness)) return false;
     for (int i = 0; v->limits && i < v->limits->n; i++)
         if (v->limits->row[i].kind != HF_LIMIT_TENSION) return false;
     int n_rigid = 0; /* cables of law length in all designs */
@@ -65,11 +64,48 @@ bool hf_saddle_step_applies(const hf_evaluator *v)
     return true;
 }
 
+/* Returns the row in `all` of block i of the stiffness matrix of the truss. */
+static int row_of_truss(const hf_model *m, int i)
+{
+    return i < m->n_attachment ? m->n_free + i : m->n_node + i - m->n_attachment;
+}
+
+/* Orders the matrix by the target positions of the net and the positions of the truss. */
+static hf_status create_matrix(hf_saddle_step *to)
+{
+    const hf_model *m = to->v->model;
+    const hf_stiffness_blocks *truss = m->truss_stiffness;
+    int n_moving = m->n_free + m->n_attachment, n = 0, *end;
+    double *position;
+    void *block;
+    HF_TRY(HF_ARENA_ARRAYS(&block, HF_ARRAY(end, 2 * ((size_t)m->n_cable + (size_t)(truss ? truss->n_block : 0))),
+                           HF_ARRAY(position, 3 * (size_t)to->n)));
+    for (int e = 0; e < m->n_cable; e++) {
+        if (m->end_row[2 * e] >= n_moving || m->end_row[2 * e + 1] >= n_moving) continue;
+        memcpy(end + 2 * (ptrdiff_t)n++, m->end_row + 2 * (ptrdiff_t)e, 2 * sizeof *end);
+    }
+    for (int i = 0; truss && i < truss->n_block; i++) {
+        if (truss->block[i].row == truss->block[i].column) continue;
+        end[2 * n] = row_of_truss(m, truss->block[i].row);
+        end[2 * n++ + 1] = row_of_truss(m, truss->block[i].column);
+    }
+    for (int i = 0; i < m->n_node; i++)
+        for (int c = 0; c < 3; c++)
+            position[3 * i + c] = m->position_m[c * m->n_node + i];
+    for (int i = 0; truss && i < truss->n; i++)
+        memcpy(position + 3 * (ptrdiff_t)row_of_truss(m, i), truss->position_m + 3 * (ptrdiff_t)i,
+               3 * sizeof *position);
+    hf_status status = hf_dissection_create(to->n, position, n, end, &to->matrix);
+    hf_arena_free_block(block);
+    return status;
+}
+
 hf_status hf_saddle_step_create(const hf_evaluator *v, int n_row, hf_saddle_step *to)
 {
     const hf_model *m = v->model;
-    size_t n_dof = HF_BLOCK * (size_t)m->n_free, n_held = HF_BLOCK * (size_t)m->n_attachment;
     *to = (hf_saddle_step){.v = v, .n_row = n_row, .n_rows = n_objective(v)};
+    to->n = m->n_node + (m->truss_stiffness ? m->truss_stiffness->n - m->n_attachment : 0);
+    size_t n_dof = HF_BLOCK * (size_t)to->n;
     for (int k = 0; k < n_objective(v); k++)
         if (figure_of(v, k) == HF_FIGURE_EVENNESS) to->border += 2;
     HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_SADDLE_STEP_FIELDS(HF_ARENA_ITEM)));
@@ -77,12 +113,19 @@ hf_status hf_saddle_step_create(const hf_evaluator *v, int n_row, hf_saddle_step
         to->cable[e].variable = -1;
     for (int k = 0; k < m->n_variable; k++)
         to->cable[m->variable_cable[k]].variable = k;
-    return hf_block_band_create(m->n_free, m->half_bandwidth, &to->matrix);
+    for (int i = 0; i < 6 * to->n; i++) {
+        int row = i / 6, held = row < m->n_free + m->n_attachment ? row - m->n_free : row - m->n_node + m->n_attachment;
+        if (row >= m->n_free + m->n_attachment && row < m->n_node)
+            to->is_held[i] = true;
+        else if (held >= 0)
+            to->is_held[i] = m->truss_stiffness->is_held[3 * held + i % 3];
+    }
+    return create_matrix(to);
 }
 
 void hf_saddle_step_free(hf_saddle_step *s)
 {
-    hf_arena_free_block(s->matrix.block);
+    hf_dissection_free(&s->matrix);
     hf_arena_free_block(s->block);
     *s = (hf_saddle_step){0};
 }
@@ -232,12 +275,33 @@ static void add_to_ends(const hf_model *m, int e, const double add[6], double *t
     }
 }
 
-/* Computes the product of the matrix without the truss with `all` and `border_value`. */
+/* Sets the rows that have no unknowns to zero. */
+static void clear_held(const hf_saddle_step *s, double *to)
+{
+    for (int i = 0; i < 6 * s->n; i++)
+        if (s->is_held[i]) to[i] = 0;
+}
+
+/* Adds the product of a block of the stiffness matrix of the truss with the rows of `column` to the rows of `row`. */
+static void multiply_block(hf_saddle_step *s, int row, int column, const hf_stiffness_block *block, bool is_turned)
+{
+    double *to = s->product + 6 * (ptrdiff_t)row;
+    const double *of = s->all + 6 * (ptrdiff_t)column;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            double entry = is_turned ? block->entry[c][r] : block->entry[r][c];
+            to[r] += entry * of[3 + c];
+            to[3 + r] += entry * of[c];
+        }
+}
+
+/* Computes the product of the matrix with `all` and `border_value`. */
 static void multiply(hf_saddle_step *s)
 {
     const hf_model *m = s->v->model;
+    const hf_stiffness_blocks *truss = m->truss_stiffness;
     const double *y = s->border_value;
-    memset(s->product, 0, 6 * (size_t)m->n_node * sizeof *s->product);
+    memset(s->product, 0, 6 * (size_t)s->n * sizeof *s->product);
     memset(s->border_product, 0, (size_t)s->border * sizeof *s->border_product);
     for (int e = 0; e < m->n_cable; e++) {
         const hf_saddle_cable *c = &s->cable[e];
@@ -262,6 +326,13 @@ static void multiply(hf_saddle_step *s)
     for (int i = 0; i < m->n_free; i++)
         for (int c = 0; c < 3; c++)
             s->product[6 * i + c] += s->weight[i] * s->all[6 * i + c];
+    for (int i = 0; truss && i < truss->n_block; i++) {
+        const hf_stiffness_block *b = &truss->block[i];
+        int row = row_of_truss(m, b->row), column = row_of_truss(m, b->column);
+        multiply_block(s, row, column, b, false);
+        if (row != column) multiply_block(s, column, row, b, true);
+    }
+    clear_held(s, s->product);
     for (int k = 0; k < s->n_rows; k++) {
         hf_saddle_rows r = s->rows[k];
         if (r.figure != HF_FIGURE_EVENNESS) continue;
@@ -270,12 +341,11 @@ static void multiply(hf_saddle_step *s)
     }
 }
 
-/* Sets the slopes of the cables by the residuals, and the right-hand side: `start`, `border_start`, and for the
- * attachments `product`. */
+/* Sets the slopes of the cables by the residuals, and the right-hand side: `start` and `border_start`. */
 static void find_right(hf_saddle_step *s)
 {
     const hf_model *m = s->v->model;
-    memset(s->product, 0, 6 * (size_t)m->n_node * sizeof *s->product);
+    memset(s->product, 0, 6 * (size_t)s->n * sizeof *s->product);
     memset(s->border_start, 0, (size_t)s->border * sizeof *s->border_start);
     for (int e = 0; e < m->n_cable; e++)
         s->cable[e].slope = 0;
@@ -304,7 +374,8 @@ static void find_right(hf_saddle_step *s)
         for (int k = 0; k < s->border; k++)
             s->border_start[k] += s->coefficient[(size_t)k * (size_t)m->n_cable + (size_t)e] * by_m;
     }
-    for (int i = 0; i < 6 * m->n_node; i++)
+    clear_held(s, s->product);
+    for (int i = 0; i < 6 * s->n; i++)
         s->start[i] = -s->product[i];
     for (int k = 0; k < s->border; k++)
         s->border_start[k] = -s->border_start[k];
@@ -312,16 +383,28 @@ static void find_right(hf_saddle_step *s)
 
 /* ---- solves ---- */
 
-/* Assembles the matrix of the free nodes. */
+/* Adds a block to the matrix without the rows and columns that have no unknowns. */
+static void add_block(hf_saddle_step *s, int i, int j, double block[6][6])
+{
+    double free_part[6][6];
+    for (int r = 0; r < 6; r++)
+        for (int c = 0; c < 6; c++)
+            free_part[r][c] = s->is_held[6 * i + r] || s->is_held[6 * j + c] ? 0 : block[r][c];
+    hf_dissection_add(&s->matrix, i, j, free_part);
+}
+
+/* Assembles the matrix. A row without an unknown has the diagonal entry 1. */
 static void assemble(hf_saddle_step *s)
 {
     const hf_model *m = s->v->model;
-    hf_block_band_clear(&s->matrix);
+    const hf_stiffness_blocks *truss = m->truss_stiffness;
+    int n_moving = m->n_free + m->n_attachment;
+    hf_dissection_clear(&s->matrix);
     for (int e = 0; e < m->n_cable; e++) {
         const hf_saddle_cable *c = &s->cable[e];
         int a = m->end_row[2 * e], b = m->end_row[2 * e + 1];
         double block[6][6], minus[6][6];
-        if (a >= m->n_free && b >= m->n_free) continue;
+        if (a >= n_moving && b >= n_moving) continue;
         for (int r = 0; r < 3; r++)
             for (int k = 0; k < 3; k++) {
                 double uu = c->unit[r] * c->unit[k];
@@ -332,35 +415,43 @@ static void assemble(hf_saddle_step *s)
         for (int r = 0; r < 6; r++)
             for (int k = 0; k < 6; k++)
                 minus[r][k] = -block[r][k];
-        if (a < m->n_free) hf_block_band_add(&s->matrix, a, a, block);
-        if (b < m->n_free) hf_block_band_add(&s->matrix, b, b, block);
-        if (a < m->n_free && b < m->n_free) hf_block_band_add(&s->matrix, a > b ? a : b, a > b ? b : a, minus);
+        if (a < n_moving) add_block(s, a, a, block);
+        if (b < n_moving) add_block(s, b, b, block);
+        if (a < n_moving && b < n_moving) add_block(s, a, b, minus);
     }
-    for (int i = 0; i < m->n_free; i++) {
+    for (int i = 0; i < s->n; i++) {
         double block[6][6] = {{0}};
-        for (int c = 0; c < 3; c++)
-            block[c][c] = s->weight[i];
-        hf_block_band_add(&s->matrix, i, i, block);
+        for (int c = 0; c < 6; c++)
+            block[c][c] = s->is_held[6 * i + c] ? 1 : i < m->n_free && c < 3 ? s->weight[i] : 0;
+        hf_dissection_add(&s->matrix, i, i, block);
+    }
+    for (int i = 0; truss && i < truss->n_block; i++) {
+        const hf_stiffness_block *b = &truss->block[i];
+        double block[6][6] = {{0}};
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++)
+                block[r][3 + c] = block[3 + r][c] = b->entry[r][c];
+        add_block(s, row_of_truss(m, b->row), row_of_truss(m, b->column), block);
     }
 }
 
-/* Returns column k of the border in the rows of the free nodes. */
+/* Returns column k of the border. */
 static double *border_column(const hf_saddle_step *s, int k)
 {
-    return s->column + (size_t)(s->border + k) * 6 * (size_t)s->v->model->n_free;
+    return s->column + (size_t)(s->border + k) * 6 * (size_t)s->n;
 }
 
-/* Assembles and factors the matrix of the free nodes and the border, from which the variables are eliminated. Returns
+/* Assembles and factors the matrix and the border, from which the variables are eliminated. Returns
  * HF_OK or HF_SINGULAR. */
 static hf_status factor(hf_saddle_step *s)
 {
     const hf_model *m = s->v->model;
-    size_t n_dof = 6 * (size_t)m->n_free, border = (size_t)s->border;
+    size_t n_dof = 6 * (size_t)s->n, border = (size_t)s->border;
     for (int e = 0; e < m->n_cable; e++)
         s->cable[e].factored_side = s->cable[e].side;
     assemble(s);
-    HF_TRY(hf_block_band_factor(&s->matrix));
-    memset(s->all, 0, 6 * (size_t)m->n_node * sizeof *s->all);
+    HF_TRY(hf_dissection_factor(&s->matrix));
+    memset(s->all, 0, n_dof * sizeof *s->all);
     memset(s->border_value, 0, border * sizeof *s->border_value);
     for (int k = 0; k < s->border; k++) {
         double *solution = s->column + (size_t)k * n_dof;
@@ -369,7 +460,7 @@ static hf_status factor(hf_saddle_step *s)
         s->border_value[k] = 0;
         memcpy(border_column(s, k), s->product, n_dof * sizeof(double));
         memcpy(solution, s->product, n_dof * sizeof(double));
-        hf_block_band_solve(&s->matrix, solution);
+        hf_dissection_solve(&s->matrix, solution);
         memcpy(s->corner + (size_t)k * border, s->border_product, border * sizeof(double));
     }
     for (int k = 0; k < s->border; k++)
@@ -382,8 +473,8 @@ static hf_status factor(hf_saddle_step *s)
 /* Replaces `right` and border_right by the solution with the factor. */
 static void solve_once(hf_saddle_step *s)
 {
-    size_t n_dof = 6 * (size_t)s->v->model->n_free;
-    hf_block_band_solve(&s->matrix, s->right);
+    size_t n_dof = 6 * (size_t)s->n;
+    hf_dissection_solve(&s->matrix, s->right);
     for (int k = 0; k < s->border; k++)
         s->border_right[k] -= hf_dot(n_dof, border_column(s, k), s->right);
     if (s->border) hf_dense_solve(s->border, s->corner, s->pivot, 1, s->border_right);
@@ -391,105 +482,22 @@ static void solve_once(hf_saddle_step *s)
         hf_subtract(n_dof, s->border_right[k], s->column + (size_t)k * n_dof, s->right);
 }
 
-/* Solves for `all` of the free nodes and border_value; those of the attachments are given. has_start: with the
- * right-hand side, otherwise with zero. `product` is that of the solution afterwards. */
-static void solve_free(hf_saddle_step *s, bool has_start, int refinements)
+/* Solves for `all` and border_value. */
+static void solve_all(hf_saddle_step *s)
 {
-    int n_dof = 6 * s->v->model->n_free;
-    memset(s->all, 0, (size_t)n_dof * sizeof *s->all);
+    size_t n_dof = 6 * (size_t)s->n;
+    memset(s->all, 0, n_dof * sizeof *s->all);
     memset(s->border_value, 0, (size_t)s->border * sizeof *s->border_value);
-    for (int again = 0; again <= refinements; again++) {
+    for (int again = 0; again <= REFINEMENTS; again++) {
         multiply(s);
-        for (int i = 0; i < n_dof; i++)
-            s->right[i] = (has_start ? s->start[i] : 0) - s->product[i];
+        for (size_t i = 0; i < n_dof; i++)
+            s->right[i] = s->start[i] - s->product[i];
         for (int k = 0; k < s->border; k++)
-            s->border_right[k] = (has_start ? s->border_start[k] : 0) - s->border_product[k];
+            s->border_right[k] = s->border_start[k] - s->border_product[k];
         solve_once(s);
-        hf_add((size_t)n_dof, 1, s->right, s->all);
+        hf_add(n_dof, 1, s->right, s->all);
         hf_add((size_t)s->border, 1, s->border_right, s->border_value);
     }
-    multiply(s);
-}
-
-/* ---- attachments ---- */
-
-/* Sets u [n_attachment][6] to `held` + F (forces and their multipliers on the attachments), which is zero if the truss
- * is in equilibrium. `held` are the displacements and multipliers of the attachments. */
-static void answer(hf_saddle_step *s, const double *held, bool has_start, double *u)
-{
-    const hf_model *m = s->v->model;
-    int n = m->n_attachment;
-    double *force = s->flexed, *moved = s->flexed + 3 * (ptrdiff_t)n;
-    memcpy(s->all + 6 * (ptrdiff_t)m->n_free, held, 6 * (size_t)n * sizeof(double));
-    solve_free(s, has_start, has_start ? REFINEMENTS : 0);
-    for (int part = 0; part < 2; part++) { /* multipliers answer to displacements, and the reverse */
-        for (int i = 0; i < 3 * n; i++) {
-            ptrdiff_t at = 6 * (ptrdiff_t)(m->n_free + i / 3) + 3 * (1 - part) + i % 3;
-            force[i] = s->product[at] - (has_start ? s->start[at] : 0);
-        }
-        hf_schur_flex(m, force, moved);
-        for (int i = 0; i < 3 * n; i++)
-            u[6 * (i / 3) + 3 * part + i % 3] = held[6 * (i / 3) + 3 * part + i % 3] + moved[i];
-    }
-}
-
-/* Solves for all unknowns. The attachments are found by GMRES (Saad, Schultz, SIAM J. Sci. Stat. Comput. 7, 1986).
- * Returns HF_OK, or HF_SINGULAR if it does not converge. */
-static hf_status solve_all(hf_saddle_step *s)
-{
-    const hf_model *m = s->v->model;
-    size_t n = 6 * (size_t)m->n_attachment;
-    double *cosine = s->turn, *sine = cosine + HF_SADDLE_KRYLOV, *right = sine + HF_SADDLE_KRYLOV, first;
-    int k = 0;
-    memset(s->basis, 0, n * sizeof(double));
-    if (n == 0) {
-        solve_free(s, true, REFINEMENTS);
-        return HF_OK;
-    }
-    answer(s, s->basis, true, s->basis + n);
-    memcpy(s->basis, s->basis + n, n * sizeof(double));
-    first = right[0] = sqrt(hf_dot(n, s->basis, s->basis));
-    for (size_t i = 0; i < n && first > 0; i++)
-        s->basis[i] /= -first;
-    for (; k < HF_SADDLE_KRYLOV && fabs(right[k]) > KRYLOV_END * first; k++) {
-        double *next = s->basis + (size_t)(k + 1) * n, *h = s->triangle + (size_t)k * (HF_SADDLE_KRYLOV + 1);
-        answer(s, s->basis + (size_t)k * n, false, next);
-        for (int i = 0; i <= k; i++) {
-            h[i] = hf_dot(n, s->basis + (size_t)i * n, next);
-            hf_subtract(n, h[i], s->basis + (size_t)i * n, next);
-        }
-        double norm = sqrt(hf_dot(n, next, next));
-        for (size_t i = 0; i < n && norm > 0; i++)
-            next[i] /= norm;
-        for (int i = 0; i < k; i++) {
-            double upper = cosine[i] * h[i] + sine[i] * h[i + 1];
-            h[i + 1] = cosine[i] * h[i + 1] - sine[i] * h[i];
-            h[i] = upper;
-        }
-        double length = hypot(h[k], norm);
-        if (!(length > 0)) return HF_SINGULAR;
-        cosine[k] = h[k] / length;
-        sine[k] = norm / length;
-        h[k] = length;
-        right[k + 1] = -sine[k] * right[k];
-        right[k] *= cosine[k];
-    }
-    if (fabs(right[k]) > KRYLOV_ENOUGH * first) return HF_SINGULAR;
-    for (int i = k - 1; i >= 0; i--) {
-        for (int j = i + 1; j < k; j++)
-            right[i] -= s->triangle[(size_t)j * (HF_SADDLE_KRYLOV + 1) + (size_t)i] * right[j];
-        right[i] /= s->triangle[(size_t)i * (HF_SADDLE_KRYLOV + 1) + (size_t)i];
-    }
-    double *sum = s->basis + (size_t)HF_SADDLE_KRYLOV * n;
-    for (size_t i = 0; i < n; i++) {
-        double value = 0;
-        for (int j = 0; j < k; j++)
-            value += right[j] * s->basis[(size_t)j * n + i];
-        sum[i] = value;
-    }
-    memcpy(s->all + 6 * (size_t)m->n_free, sum, n * sizeof(double));
-    solve_free(s, true, REFINEMENTS);
-    return HF_OK;
 }
 
 /* ---- active set ---- */
@@ -634,7 +642,7 @@ hf_status hf_saddle_step_solve(hf_saddle_step *s, double damping, const double *
     for (int n = 0; changes && n < SETS_MAX; n++) {
         HF_TRY(prepare(s, damping));
         find_right(s);
-        HF_TRY(solve_all(s));
+        solve_all(s);
         for (int e = 0; e < m->n_cable; e++) {
             hf_saddle_cable *c = &s->cable[e];
             double v = find_step(s, e, c);

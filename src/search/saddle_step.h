@@ -8,7 +8,7 @@
  * damping vanishes with them. Objectives may be psi, tensions and evenness. */
 #pragma once
 
-#include "linalg/block_band.h"
+#include "linalg/dissection.h"
 #include "search/watch.h"
 
 /* A cable in the model. The change of its tension is dT = direct x + along d, where x is the step of its variable and d
@@ -45,32 +45,29 @@ typedef struct {
     X(double, weight, m->n_free, "curvature of the objectives by the displacement of a free node")                     \
     X(double, stiffness, m->n_free, "scratch: sum of the force densities at a node")                                   \
     X(double, coefficient, (size_t)to->border *(size_t)m->n_cable, "[border][n_cable] couples dT and the border")      \
-    X(double, column, 2 * (size_t)to->border * n_dof, "[2][border][6 n_free] solutions for the border, its columns")   \
+    X(double, column, 2 * (size_t)to->border * n_dof, "[2][border][n][6] solutions for the border, its columns")       \
     X(double, corner, (size_t)to->border *(size_t)to->border, "[border][border] Schur complement, factored")           \
     X(int, pivot, to->border, "its rows")                                                                              \
     X(double, base, to->n_row, "f at the shape of the model")                                                          \
     X(double, residual, to->n_row, "f at a step of zero, by the model")                                                \
     X(double, rate, to->n_row, "J x of the last step")                                                                 \
-    X(double, all, 6 * (size_t)m->n_node, "[n_node][6] displacements and multipliers")                                 \
-    X(double, product, 6 * (size_t)m->n_node, "[n_node][6] scratch: the matrix times `all`")                           \
-    X(double, right, n_dof, "[n_free][6] scratch")                                                                     \
+    X(bool, is_held, n_dof, "[n][6] rows without an unknown: of supports, and of supports of the truss")               \
+    X(double, all, n_dof, "[n][6] displacements and multipliers")                                                      \
+    X(double, product, n_dof, "[n][6] scratch: the matrix times `all`")                                                \
+    X(double, right, n_dof, "[n][6] scratch")                                                                          \
     X(double, border_value, to->border, "values of the border")                                                        \
     X(double, border_product, to->border, "scratch")                                                                   \
     X(double, border_right, to->border, "scratch")                                                                     \
-    X(double, start, 6 * (size_t)m->n_node, "[n_node][6] right-hand side")                                             \
-    X(double, border_start, to->border, "that of the border")                                                          \
-    X(double, basis, (HF_SADDLE_KRYLOV + 1) * n_held, "[HF_SADDLE_KRYLOV + 1][6 n_attachment] scratch")                \
-    X(double, triangle, n_held ? HF_SADDLE_KRYLOV *(HF_SADDLE_KRYLOV + 1) : 0, "scratch: columns of the projection")   \
-    X(double, turn, 3 * HF_SADDLE_KRYLOV + 1, "scratch: its rotations and right-hand side")                            \
-    X(double, flexed, n_held, "[2][3 n_attachment] scratch")
-#define HF_SADDLE_KRYLOV 60 /* maximum number of solves for the attachments to a truss */
+    X(double, start, n_dof, "[n][6] right-hand side")                                                                  \
+    X(double, border_start, to->border, "that of the border")
 
 typedef struct {
     const hf_evaluator *v; /* borrowed */
+    int n;                 /* rows of unknowns: nodes of the net, then other blocks of the truss */
     int border;            /* two unknowns for each objective of evenness: mean tension and its multiplier */
     int n_row, n_rows;     /* residuals, and objectives to which they belong */
     HF_SADDLE_STEP_FIELDS(HF_ARENA_MEMBER)
-    hf_block_band matrix;
+    hf_dissection matrix;
     double factored_damping; /* damping of the factor; -1: none */
     void *block;
 } hf_saddle_step;
