@@ -67,6 +67,13 @@
 #define SETTLED_GAIN 1e-4
 #define SETTLED_OBJECTIVE 1e-3
 #define BEND_WORTH 0.5 /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
+/* The same for steps by the saddle-point system, whose corrections need no derivatives. Such a step may also break
+ * limits before it is corrected. A correction that gains less than the part SPARSE_WORTH of the promise is the last
+ * one, and so is one that multiplies the merit by SPARSE_DIVERGES. */
+#define SPARSE_BENDS_MAX 8
+#define SPARSE_BEND_BELOW 0.9
+#define SPARSE_WORTH 0.05
+#define SPARSE_DIVERGES 2
 
 /* The numbers of steps were counted on the cases of configs and METHOD. UNNOTICED is the number of operations in about
  * 0.1 s. */
@@ -255,8 +262,9 @@ static hf_status solve_step(hf_refine_problem *p, double damping, double *gain)
 }
 
 /* Solves a step and evaluates its end. Tensions are not linear in the variables, so the step may break a limit on them.
- * It is then solved again with the tensions that were found at its end. Returns HF_OK, HF_RATIO_CAP if a limit is still
- * broken after CORRECTIONS_MAX corrections, or the status of the failure. */
+ * It is then solved again with the tensions that were found at its end; bend_step does so for a step by the
+ * saddle-point system. Returns HF_OK, HF_RATIO_CAP if a limit is still broken after CORRECTIONS_MAX corrections, or the
+ * status of the failure. */
 static hf_status try_step(hf_refine_problem *p, double damping, double *gain)
 {
     hf_watch_forget(&p->watch);
@@ -267,10 +275,8 @@ static hf_status try_step(hf_refine_problem *p, double damping, double *gain)
         if (hf_watch_keeps(&p->watch, p->w)) return HF_OK;
         p->needs_dense = p->is_sparse && hf_watch_breaks_cap(&p->watch);
         if (p->needs_dense) return HF_RATIO_CAP;
-        if (p->is_sparse)
-            hf_saddle_step_learn(&p->saddle, &p->watch);
-        else
-            hf_watch_learn(&p->watch, p->step.x, p->w);
+        if (p->is_sparse) return HF_OK;
+        hf_watch_learn(&p->watch, p->step.x, p->w);
     }
     return HF_RATIO_CAP;
 }
@@ -300,30 +306,48 @@ static hf_status solve_bent(hf_refine_problem *p)
     return hf_quadratic_solve(&p->step, p->hessian, p->pull, p->down, p->up, worst_limit, p);
 }
 
+/* Returns true if a correction from the merit `last` to that of the last evaluation is worth another one. */
+static bool is_worth(const hf_refine_problem *p, double last, double gain)
+{
+    double merit = p->result.merit;
+    return p->is_sparse ? (last - merit) * (last + merit) / 2 > SPARSE_WORTH * gain : merit <= BEND_WORTH * last;
+}
+
 /* Corrects a step for the curvature of the residuals: along a curved valley, a step ends on its flank. With the
- * residuals found there, the same matrices lead back to the floor. This is repeated as long as it at least halves the
- * merit (BEND_WORTH). `before` is merit^2/2 before the step, `gain` its promised decrease. If the best merit is below
- * that before, `trial` and the shape in the workspace become the best ones. Returns HF_OK, HF_NO_MEMORY, HF_INTERRUPTED
- * or the status of the last evaluation. */
+ * residuals found there, the same matrices lead back to the floor. This is repeated as long as it is worth it. `before`
+ * is merit^2/2 before the step, `gain` its promised decrease. If the best merit within the limits is below that before,
+ * `trial` and the shape in the workspace become the best ones. Returns HF_OK, HF_RATIO_CAP if no step keeps the limits,
+ * HF_NO_MEMORY, HF_INTERRUPTED or the status of the last evaluation. */
 static hf_status bend_step(hf_refine_problem *p, double before, double gain)
 {
     size_t size = (size_t)p->n * sizeof(double);
-    for (int again = 0; again < BENDS_MAX; again++) {
-        double merit = p->result.merit;
-        if (before - merit * merit / 2 > BEND_BELOW * gain || hf_residuals_find(&p->residuals, p->w) != HF_OK) break;
-        memcpy(p->step_taken, p->step.x, size);
+    bool is_best = !p->is_sparse || hf_watch_keeps(&p->watch, p->w); /* the step in the workspace is the best one */
+    double last = p->result.merit, merit = is_best ? last : (double)INFINITY;
+    double below = p->is_sparse ? SPARSE_BEND_BELOW : BEND_BELOW;
+    memcpy(p->step_taken, p->step.x, size);
+    for (int again = 0; again < (p->is_sparse ? SPARSE_BENDS_MAX : BENDS_MAX); again++) {
+        if (is_best && before - merit * merit / 2 > below * gain) break;
+        if (hf_residuals_find(&p->residuals, p->w) != HF_OK) break;
+        if (p->is_sparse) hf_saddle_step_learn(&p->saddle, &p->watch);
         hf_status status = solve_bent(p);
         if (status == HF_OK) status = take_step(p);
         if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
-        if (status == HF_OK && hf_watch_keeps(&p->watch, p->w) && p->result.merit < merit) {
-            if (p->result.merit > BEND_WORTH * merit) break;
-            continue;
+        bool keeps = status == HF_OK && hf_watch_keeps(&p->watch, p->w), goes_on = is_worth(p, last, gain);
+        is_best = keeps && p->result.merit < merit;
+        if (is_best) {
+            merit = p->result.merit;
+            memcpy(p->step_taken, p->step.x, size);
+        } else {
+            goes_on = p->is_sparse && status == HF_OK && !keeps && p->result.merit < SPARSE_DIVERGES * last;
         }
-        memcpy(p->step.x, p->step_taken, size);
-        if (merit * merit / 2 < before) return take_step(p);
-        p->result.merit = merit; /* the step fails, so its shape is not needed */
-        return HF_OK;
+        if (!goes_on) break;
+        last = p->result.merit;
     }
+    if (is_best) return HF_OK;
+    if (!isfinite(merit)) return HF_RATIO_CAP;
+    memcpy(p->step.x, p->step_taken, size);
+    if (merit * merit / 2 < before) return take_step(p);
+    p->result.merit = merit; /* the step fails, so its shape is not needed */
     return HF_OK;
 }
 
@@ -465,7 +489,7 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
             p->violation = after;
             hf_refine_keep(p);
             p->is_outside = !is_inside;
-            if (is_inside) p->damping = DAMPING_FIRST;
+            if (is_inside) p->damping = p->is_sparse ? SPARSE_DAMPING_FIRST : DAMPING_FIRST;
             r->merit = hf_refine_merit(p, &p->result);
             HF_TRY(hf_refine_linearise(p));
         } else if (p->damping < DAMPING_OF_WAY) {
