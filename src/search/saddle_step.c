@@ -15,9 +15,10 @@
  *
  * A truss with displacements d and multipliers m has the energy m'K d.
  *
- * Contents: making - model - products - solves - active set - the step */
+ * Contents: making - model - right-hand side - solves - active set - the step */
 #include "search/saddle_step.h"
 
+#include "base/elementary.h"
 #include "linalg/dense.h"
 #include "linalg/dot.h"
 #include "solve/newton_matrix.h"
@@ -28,7 +29,6 @@
 #define SETS_MAX 12    /* maximum number of active sets of a step */
 #define ALL_AT_ONCE 8  /* sets after which only the worst limits change */
 #define ROUNDING 1e-12 /* a violation below this part of the magnitude is rounding */
-#define REFINEMENTS 1  /* steps of iterative refinement of each solve */
 
 /* ---- making ---- */
 
@@ -263,15 +263,16 @@ static void eliminate(hf_saddle_cable *c)
     }
 }
 
-/* ---- products ---- */
+/* ---- right-hand side ---- */
 
-/* Adds a vector along the cable and one across it to the entries of its ends. */
-static void add_to_ends(const hf_model *m, int e, const double add[6], double *to)
+/* Adds vectors along the cable, by displacements and by multipliers, to the entries of its ends. */
+static void add_to_ends(const hf_model *m, int e, const double unit[3], double by_d, double by_m, double *to)
 {
     double *first = to + 6 * (ptrdiff_t)m->end_row[2 * e], *second = to + 6 * (ptrdiff_t)m->end_row[2 * e + 1];
     for (int i = 0; i < 6; i++) {
-        first[i] -= add[i];
-        second[i] += add[i];
+        double add = (i < 3 ? by_d : by_m) * unit[i % 3];
+        first[i] -= add;
+        second[i] += add;
     }
 }
 
@@ -282,71 +283,12 @@ static void clear_held(const hf_saddle_step *s, double *to)
         if (s->is_held[i]) to[i] = 0;
 }
 
-/* Adds the product of a block of the stiffness matrix of the truss with the rows of `column` to the rows of `row`. */
-static void multiply_block(hf_saddle_step *s, int row, int column, const hf_stiffness_block *block, bool is_turned)
-{
-    double *to = s->product + 6 * (ptrdiff_t)row;
-    const double *of = s->all + 6 * (ptrdiff_t)column;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) {
-            double entry = is_turned ? block->entry[c][r] : block->entry[r][c];
-            to[r] += entry * of[3 + c];
-            to[3 + r] += entry * of[c];
-        }
-}
-
-/* Computes the product of the matrix with `all` and `border_value`. */
-static void multiply(hf_saddle_step *s)
-{
-    const hf_model *m = s->v->model;
-    const hf_stiffness_blocks *truss = m->truss_stiffness;
-    const double *y = s->border_value;
-    memset(s->product, 0, 6 * (size_t)s->n * sizeof *s->product);
-    memset(s->border_product, 0, (size_t)s->border * sizeof *s->border_product);
-    for (int e = 0; e < m->n_cable; e++) {
-        const hf_saddle_cable *c = &s->cable[e];
-        const double *a = s->all + 6 * (ptrdiff_t)m->end_row[2 * e], *b = s->all + 6 * (ptrdiff_t)m->end_row[2 * e + 1];
-        const double *u = c->unit;
-        double r[6], add[6], of_border = 0;
-        for (int i = 0; i < 6; i++)
-            r[i] = b[i] - a[i];
-        for (int k = 0; k < s->border; k++)
-            of_border += s->coefficient[(size_t)k * (size_t)m->n_cable + (size_t)e] * y[k];
-        double d = u[0] * r[0] + u[1] * r[1] + u[2] * r[2], v = u[0] * r[3] + u[1] * r[4] + u[2] * r[5];
-        double pull = c->dm * d - c->mm * (v + of_border);
-        double by_d = c->dd * d + (c->dm - c->across) * v + c->dm * of_border, by_m = pull - c->across * d;
-        for (int i = 0; i < 3; i++) {
-            add[i] = by_d * u[i] + c->across * r[3 + i];
-            add[3 + i] = by_m * u[i] + c->across * r[i];
-        }
-        add_to_ends(m, e, add, s->product);
-        for (int k = 0; k < s->border; k++)
-            s->border_product[k] += s->coefficient[(size_t)k * (size_t)m->n_cable + (size_t)e] * pull;
-    }
-    for (int i = 0; i < m->n_free; i++)
-        for (int c = 0; c < 3; c++)
-            s->product[6 * i + c] += s->weight[i] * s->all[6 * i + c];
-    for (int i = 0; truss && i < truss->n_block; i++) {
-        const hf_stiffness_block *b = &truss->block[i];
-        int row = row_of_truss(m, b->row), column = row_of_truss(m, b->column);
-        multiply_block(s, row, column, b, false);
-        if (row != column) multiply_block(s, column, row, b, true);
-    }
-    clear_held(s, s->product);
-    for (int k = 0; k < s->n_rows; k++) {
-        hf_saddle_rows r = s->rows[k];
-        if (r.figure != HF_FIGURE_EVENNESS) continue;
-        s->border_product[r.border] += r.square * y[r.border] + y[r.border + 1];
-        s->border_product[r.border + 1] += y[r.border];
-    }
-}
-
-/* Sets the slopes of the cables by the residuals, and the right-hand side: `start` and `border_start`. */
+/* Sets the slopes of the cables by the residuals, and `all` and border_value to the right-hand side. */
 static void find_right(hf_saddle_step *s)
 {
     const hf_model *m = s->v->model;
-    memset(s->product, 0, 6 * (size_t)s->n * sizeof *s->product);
-    memset(s->border_start, 0, (size_t)s->border * sizeof *s->border_start);
+    memset(s->all, 0, 6 * (size_t)s->n * sizeof *s->all);
+    memset(s->border_value, 0, (size_t)s->border * sizeof *s->border_value);
     for (int e = 0; e < m->n_cable; e++)
         s->cable[e].slope = 0;
     for (int k = 0; k < s->n_rows; k++) {
@@ -355,42 +297,60 @@ static void find_right(hf_saddle_step *s)
         for (int i = 0; i < r.n; i++) {
             if (r.figure == HF_FIGURE_PSI) {
                 for (int c = 0; c < 3; c++)
-                    s->product[6 * r.index[i] + c] += r.part * f[3 * i + c];
+                    s->all[6 * r.index[i] + c] -= r.part * f[3 * i + c];
                 continue;
             }
             s->cable[r.index[i]].slope += r.part * f[i];
             if (r.figure == HF_FIGURE_EVENNESS)
-                s->border_start[r.border] -= r.of_mean * s->cable[r.index[i]].tension_N * f[i];
+                s->border_value[r.border] += r.of_mean * s->cable[r.index[i]].tension_N * f[i];
         }
     }
     for (int e = 0; e < m->n_cable; e++) {
         const hf_saddle_cable *c = &s->cable[e];
-        double by_d = c->d + c->dm * c->slope, by_m = c->m - c->mm * c->slope, add[6];
-        for (int i = 0; i < 3; i++) {
-            add[i] = by_d * c->unit[i];
-            add[3 + i] = by_m * c->unit[i];
-        }
-        add_to_ends(m, e, add, s->product);
+        double by_m = c->m - c->mm * c->slope;
+        add_to_ends(m, e, c->unit, -(c->d + c->dm * c->slope), -by_m, s->all);
         for (int k = 0; k < s->border; k++)
-            s->border_start[k] += s->coefficient[(size_t)k * (size_t)m->n_cable + (size_t)e] * by_m;
+            s->border_value[k] -= s->coefficient[(size_t)k * (size_t)m->n_cable + (size_t)e] * by_m;
     }
-    clear_held(s, s->product);
-    for (int i = 0; i < 6 * s->n; i++)
-        s->start[i] = -s->product[i];
-    for (int k = 0; k < s->border; k++)
-        s->border_start[k] = -s->border_start[k];
+    clear_held(s, s->all);
 }
 
 /* ---- solves ---- */
 
-/* Adds a block to the matrix without the rows and columns that have no unknowns. */
+/* Adds a block to the matrix without the rows and columns that have no unknowns, in the units of displacements and
+ * multipliers. */
 static void add_block(hf_saddle_step *s, int i, int j, double block[6][6])
 {
     double free_part[6][6];
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++)
-            free_part[r][c] = s->is_held[6 * i + r] || s->is_held[6 * j + c] ? 0 : block[r][c];
+            free_part[r][c] = s->is_held[6 * i + r] || s->is_held[6 * j + c]
+                                  ? 0
+                                  : block[r][c] * (r < 3 ? s->unit : 1 / s->unit) * (c < 3 ? s->unit : 1 / s->unit);
     hf_dissection_add(&s->matrix, i, j, free_part);
+}
+
+/* Chooses the units so that the curvatures by displacements and by multipliers have the same magnitude. Otherwise, the
+ * smaller ones are lost beside the stiffness. A power of two adds no rounding. */
+static void choose_unit(hf_saddle_step *s)
+{
+    const hf_model *m = s->v->model;
+    double by_d = hf_max_magnitude((size_t)m->n_free, s->weight), by_m = 0;
+    for (int e = 0; e < m->n_cable; e++) {
+        by_d = fmax(by_d, s->cable[e].dd);
+        by_m = fmax(by_m, s->cable[e].mm);
+    }
+    s->unit = by_d > 0 && by_m > 0 ? ldexp(1, (int)lround(log2(by_m / by_d) / 4)) : 1;
+}
+
+/* Replaces x by the solution of the factored matrix. */
+static void solve_matrix(const hf_saddle_step *s, double *x)
+{
+    for (int again = 0; again < 2; again++) {
+        if (again) hf_dissection_solve(&s->matrix, x);
+        for (int i = 0; i < 6 * s->n; i++)
+            x[i] *= i % 6 < 3 ? s->unit : 1 / s->unit;
+    }
 }
 
 /* Assembles the matrix. A row without an unknown has the diagonal entry 1. */
@@ -422,8 +382,11 @@ static void assemble(hf_saddle_step *s)
     for (int i = 0; i < s->n; i++) {
         double block[6][6] = {{0}};
         for (int c = 0; c < 6; c++)
-            block[c][c] = s->is_held[6 * i + c] ? 1 : i < m->n_free && c < 3 ? s->weight[i] : 0;
+            block[c][c] = s->is_held[6 * i + c];
         hf_dissection_add(&s->matrix, i, i, block);
+        for (int c = 0; c < 6; c++)
+            block[c][c] = i < m->n_free && c < 3 ? s->weight[i] : 0;
+        add_block(s, i, i, block);
     }
     for (int i = 0; truss && i < truss->n_block; i++) {
         const hf_stiffness_block *b = &truss->block[i];
@@ -441,27 +404,43 @@ static double *border_column(const hf_saddle_step *s, int k)
     return s->column + (size_t)(s->border + k) * 6 * (size_t)s->n;
 }
 
-/* Assembles and factors the matrix and the border, from which the variables are eliminated. Returns
- * HF_OK or HF_SINGULAR. */
-static hf_status factor(hf_saddle_step *s)
+/* Sets column k of the border and row k of the corner. */
+static void make_border(hf_saddle_step *s, int k)
 {
     const hf_model *m = s->v->model;
+    const double *coefficient = s->coefficient + (size_t)k * (size_t)m->n_cable;
+    double *corner = s->corner + (size_t)k * (size_t)s->border;
+    memset(border_column(s, k), 0, 6 * (size_t)s->n * sizeof(double));
+    memset(corner, 0, (size_t)s->border * sizeof *corner);
+    for (int e = 0; e < m->n_cable; e++) {
+        const hf_saddle_cable *c = &s->cable[e];
+        double pull = -c->mm * coefficient[e];
+        add_to_ends(m, e, c->unit, c->dm * coefficient[e], pull, border_column(s, k));
+        for (int i = 0; i < s->border; i++)
+            corner[i] += s->coefficient[(size_t)i * (size_t)m->n_cable + (size_t)e] * pull;
+    }
+    clear_held(s, border_column(s, k));
+    for (int i = 0; i < s->n_rows; i++) {
+        if (s->rows[i].figure != HF_FIGURE_EVENNESS) continue;
+        if (k == s->rows[i].border) corner[k] += s->rows[i].square;
+        if (k / 2 == s->rows[i].border / 2) corner[k ^ 1] += 1;
+    }
+}
+
+/* Assembles and factors the matrix and the border, from which the variables are eliminated. Returns HF_OK or
+ * HF_SINGULAR. */
+static hf_status factor(hf_saddle_step *s)
+{
     size_t n_dof = 6 * (size_t)s->n, border = (size_t)s->border;
-    for (int e = 0; e < m->n_cable; e++)
+    for (int e = 0; e < s->v->model->n_cable; e++)
         s->cable[e].factored_side = s->cable[e].side;
+    choose_unit(s);
     assemble(s);
     HF_TRY(hf_dissection_factor(&s->matrix));
-    memset(s->all, 0, n_dof * sizeof *s->all);
-    memset(s->border_value, 0, border * sizeof *s->border_value);
     for (int k = 0; k < s->border; k++) {
-        double *solution = s->column + (size_t)k * n_dof;
-        s->border_value[k] = 1;
-        multiply(s);
-        s->border_value[k] = 0;
-        memcpy(border_column(s, k), s->product, n_dof * sizeof(double));
-        memcpy(solution, s->product, n_dof * sizeof(double));
-        hf_dissection_solve(&s->matrix, solution);
-        memcpy(s->corner + (size_t)k * border, s->border_product, border * sizeof(double));
+        make_border(s, k);
+        memcpy(s->column + (size_t)k * n_dof, border_column(s, k), n_dof * sizeof(double));
+        solve_matrix(s, s->column + (size_t)k * n_dof);
     }
     for (int k = 0; k < s->border; k++)
         for (int i = 0; i < s->border; i++)
@@ -470,34 +449,16 @@ static hf_status factor(hf_saddle_step *s)
     return s->border && hf_dense_factor(s->border, s->corner, s->pivot) ? HF_SINGULAR : HF_OK;
 }
 
-/* Replaces `right` and border_right by the solution with the factor. */
-static void solve_once(hf_saddle_step *s)
-{
-    size_t n_dof = 6 * (size_t)s->n;
-    hf_dissection_solve(&s->matrix, s->right);
-    for (int k = 0; k < s->border; k++)
-        s->border_right[k] -= hf_dot(n_dof, border_column(s, k), s->right);
-    if (s->border) hf_dense_solve(s->border, s->corner, s->pivot, 1, s->border_right);
-    for (int k = 0; k < s->border; k++)
-        hf_subtract(n_dof, s->border_right[k], s->column + (size_t)k * n_dof, s->right);
-}
-
-/* Solves for `all` and border_value. */
+/* Replaces the right-hand side in `all` and border_value by the solution. */
 static void solve_all(hf_saddle_step *s)
 {
     size_t n_dof = 6 * (size_t)s->n;
-    memset(s->all, 0, n_dof * sizeof *s->all);
-    memset(s->border_value, 0, (size_t)s->border * sizeof *s->border_value);
-    for (int again = 0; again <= REFINEMENTS; again++) {
-        multiply(s);
-        for (size_t i = 0; i < n_dof; i++)
-            s->right[i] = s->start[i] - s->product[i];
-        for (int k = 0; k < s->border; k++)
-            s->border_right[k] = s->border_start[k] - s->border_product[k];
-        solve_once(s);
-        hf_add(n_dof, 1, s->right, s->all);
-        hf_add((size_t)s->border, 1, s->border_right, s->border_value);
-    }
+    solve_matrix(s, s->all);
+    for (int k = 0; k < s->border; k++)
+        s->border_value[k] -= hf_dot(n_dof, border_column(s, k), s->all);
+    if (s->border) hf_dense_solve(s->border, s->corner, s->pivot, 1, s->border_value);
+    for (int k = 0; k < s->border; k++)
+        hf_subtract(n_dof, s->border_value[k], s->column + (size_t)k * n_dof, s->all);
 }
 
 /* ---- active set ---- */
@@ -650,7 +611,6 @@ hf_status hf_saddle_step_solve(hf_saddle_step *s, double damping, const double *
         }
         changes = change_set(s, n);
     }
-    if (changes) return HF_DIFFERENT;
     for (int e = 0; e < m->n_cable; e++) {
         const hf_saddle_cable *c = &s->cable[e];
         if (c->variable < 0) continue;
@@ -658,8 +618,7 @@ hf_status hf_saddle_step_solve(hf_saddle_step *s, double damping, const double *
         side[c->variable] = c->side;
     }
     *gain = find_rates(s);
-    if (!(*gain >= 0)) return HF_DIFFERENT;
-    return HF_OK;
+    return changes ? HF_DIFFERENT : HF_OK;
 }
 
 void hf_saddle_step_learn(const hf_saddle_step *s, hf_watch *watch)

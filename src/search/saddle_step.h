@@ -52,14 +52,8 @@ typedef struct {
     X(double, residual, to->n_row, "f at a step of zero, by the model")                                                \
     X(double, rate, to->n_row, "J x of the last step")                                                                 \
     X(bool, is_held, n_dof, "[n][6] rows without an unknown: of supports, and of supports of the truss")               \
-    X(double, all, n_dof, "[n][6] displacements and multipliers")                                                      \
-    X(double, product, n_dof, "[n][6] scratch: the matrix times `all`")                                                \
-    X(double, right, n_dof, "[n][6] scratch")                                                                          \
-    X(double, border_value, to->border, "values of the border")                                                        \
-    X(double, border_product, to->border, "scratch")                                                                   \
-    X(double, border_right, to->border, "scratch")                                                                     \
-    X(double, start, n_dof, "[n][6] right-hand side")                                                                  \
-    X(double, border_start, to->border, "that of the border")
+    X(double, all, n_dof, "[n][6] right-hand side, then displacements and multipliers")                                \
+    X(double, border_value, to->border, "those of the border")
 
 typedef struct {
     const hf_evaluator *v; /* borrowed */
@@ -68,6 +62,7 @@ typedef struct {
     int n_row, n_rows;     /* residuals, and objectives to which they belong */
     HF_SADDLE_STEP_FIELDS(HF_ARENA_MEMBER)
     hf_dissection matrix;
+    double unit;             /* m, of displacements in the matrix; 1/unit is that of multipliers */
     double factored_damping; /* damping of the factor; -1: none */
     void *block;
 } hf_saddle_step;
