@@ -111,6 +111,7 @@ typedef struct hf_constraints {
     /* Computes rate [n][n_rate], the derivatives of the smooth distances of the design measured last. Returns HF_OK or
      * HF_NO_MEMORY. */
     hf_status (*linearise)(void *room, int n_rate, hf_constraints_spread *spread, const void *context, double *rate);
+    double psi_most_m; /* maximum psi of the design if this is the only constraint, otherwise 0 */
 } hf_constraints;
 
 /* Contains the objectives of a case, prepared for the model. The objectives do not change after creation. Threads can

@@ -104,8 +104,8 @@ void hf_optimiser_free(hf_optimiser *optimiser);
  *   STALLED          steps are predicted to lower the merit, but none does, however short; or the result is the start,
  *                    because no better design was found or could be measured
  *   MAX_ITERATIONS   the maximum number of steps was reached
- *   SETTLED          the last ten steps lowered the merit by less than 1e-6 of it, and changed no weighted objective by
- *                    more than 1e-5 of the merit
+ *   SETTLED          the last five steps together lowered the merit by less than 1e-4 of it, and changed no weighted
+ *                    objective by more than 1e-3 of the merit
  *   TAKEN            the algorithm did not run: the design is a point of a front */
 typedef enum {
     HF_REFINE_CONVERGED,

