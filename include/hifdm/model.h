@@ -38,14 +38,14 @@ typedef struct {
     bool scales;         /* the design variables of the row change by the same factor (link: scale) */
 } hf_variable;
 
-/* A block of a symmetric matrix: row >= column belongs to the rows 3*row to 3*row+2 of the matrix. */
+/* A block of a symmetric matrix: entry [r][c] belongs to row 3*row+r and column 3*column+c of the matrix. */
 typedef struct {
     int row, column;
     double entry[3][3];
 } hf_stiffness_block;
 
-/* Contains the stiffness matrix of a truss as a sum of blocks. A block with row > column also stands for its transpose
- * above the diagonal. The first blocks are the translations of the attachments. */
+/* Contains the stiffness matrix of a truss as a sum of blocks. A block with different row and column also stands
+ * for its transpose. The first blocks are the translations of the attachments. */
 typedef struct {
     int n, n_block;            /* the matrix has 3 n rows; number of blocks */
     hf_stiffness_block *block; /* [n_block] N/m, N and N m */

@@ -12,6 +12,7 @@
  * Contents: what it costs - one step - the run */
 #include "search/refine.h"
 
+#include "base/elementary.h"
 #include "linalg/dot.h"
 #include "net/symmetry.h"
 #include "search/chord.h"
@@ -66,8 +67,9 @@
 #define SETTLED_SLOW 0.25
 #define SETTLED_GAIN 1e-4
 #define SETTLED_OBJECTIVE 1e-3
-#define MAXIMUM_GAIN 0.01 /* part of the merit for which a maximum of psi is left to dense steps */
-#define BEND_WORTH 0.5    /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
+#define NO_ROOM 1e-8     /* a maximum of psi leaves no room if it is below this part of the largest coordinate */
+#define LEAST_ROOM 1e-11 /* the weight is that of no smaller part, because rounding of positions would hide the merit */
+#define BEND_WORTH 0.5   /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
 /* The same for steps by the saddle-point system, whose corrections need no derivatives. Such a step may also break
  * limits before it is corrected. A correction that gains less than the part SPARSE_WORTH of the promise is the last
  * one, and so is one that multiplies the merit by SPARSE_DIVERGES. */
@@ -362,13 +364,14 @@ static hf_status tell_watcher(hf_refine_problem *p, const hf_refine_result *r, i
     const hf_refine_watcher *watcher = p->watcher;
     if (!watcher || !watcher->after) return HF_OK;
     if (!p->front) hf_refine_pack(p, r);
+    double beyond = p->psi_weight > 0 ? p->best_psi_m / p->psi_most_m - 1 : 0;
     const hf_refine_progress now = {.iterations = r->iterations,
                                     .max_iterations = max_iterations,
                                     .evaluations = p->evaluations,
                                     .is_last = r->stop != HF_REFINE_MAX_ITERATIONS || r->iterations == max_iterations,
-                                    .merit = r->merit,
+                                    .merit = p->psi_weight > 0 ? p->best_of_others : r->merit,
                                     .psi_m = p->best_psi_m,
-                                    .violation = p->is_outside ? p->violation : 0,
+                                    .violation = p->is_outside ? p->violation : fmax(0, beyond),
                                     .n_state = p->front ? 0 : p->n_state,
                                     .state = p->front ? NULL : p->state};
     return p->told = watcher->after(watcher->context, &now);
@@ -605,6 +608,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
 {
     double gain = 0, converged = p->front ? FRONT_CONVERGED : GAIN_CONVERGED;
     hf_status status = hf_refine_evaluate(p, p->at);
+    hf_refine_know(p);
     if (status == HF_OK && !is_zero(p, r) && !is_scaled_first(p, max_iterations, r)) status = hf_refine_linearise(p);
     if (status == HF_OK && p->front) {
         r->merit = hf_refine_merit(p, &p->result);
@@ -707,7 +711,7 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
  * after the cap, outside the limits, or stalled. There must be memory for them, except that the cap needs them. */
 static bool lacks_steps(hf_refine_problem *p, hf_refine_result *r)
 {
-    bool is_stuck = p->is_outside || r->stop == HF_REFINE_STALLED;
+    bool is_stuck = p->is_outside || (r->stop == HF_REFINE_STALLED && !(p->psi_weight > 0));
     p->needs_dense |= p->is_sparse && p->n <= DENSE_MOST && is_stuck && r->iterations > 0;
     if (!p->needs_dense) return false;
     r->stop = HF_REFINE_MAX_ITERATIONS;
@@ -757,29 +761,57 @@ static hf_status run_once(hf_refine_problem *p, int max_iterations, double *desi
 typedef struct {
     hf_evaluator v;
     hf_objectives objectives;
-    double weight; /* 0: nothing is replaced */
+    hf_form_result start; /* of the caller's evaluator */
+    double *design;       /* [n_variable] the start */
+    double weight;        /* 0: nothing is replaced */
+    void *block;
 } relaxation;
+
+/* Evaluates a design with its objectives, of which it makes and frees the scratch. */
+static hf_status evaluate_alone(const hf_evaluator *v, const double *design, hf_workspace *w, hf_form_result *r)
+{
+    hf_objectives_point point;
+    r->status = HF_NO_MEMORY;
+    if (hf_objectives_point_create(v->objectives, &point) == HF_OK) hf_evaluate(v, design, w, &point, r);
+    hf_objectives_point_free(&point);
+    return r->status;
+}
+
+static double largest_coordinate(const hf_model *m)
+{
+    return hf_max_magnitude(3 * (size_t)m->n_node, m->position_m);
+}
+
+/* Returns true if a maximum of psi is the only requirement, leaves no room, and psi is no objective. */
+static bool is_relaxed(const hf_evaluator *v)
+{
+    const hf_objectives *g = v->objectives;
+    if (!g || !g->constraints || g->n_objective == HF_DESIGN_ROWS_MAX) return false;
+    for (int k = 0; k < g->n_objective; k++)
+        if (g->objective[k].settings.figure == HF_FIGURE_PSI) return false;
+    return g->constraints->psi_most_m > 0 && g->constraints->psi_most_m < NO_ROOM * largest_coordinate(v->model);
+}
 
 /* Makes the relaxation. Without a merit at the start, nothing is replaced. Returns HF_OK or HF_NO_MEMORY. */
 static hf_status relax(const hf_evaluator *of, const double *design, hf_workspace *w, relaxation *to)
 {
-    hf_objectives_point point;
-    hf_form_result start;
+    hf_form_result r;
     hf_objectives *g = &to->objectives;
-    if (!of->objectives || !of->objectives->constraints || of->objectives->n_objective == HF_DESIGN_ROWS_MAX)
-        return HF_OK;
+    size_t n_variable = (size_t)of->model->n_variable;
+    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_ARRAY(to->design, n_variable)));
+    memcpy(to->design, design, n_variable * sizeof *design);
+    if (evaluate_alone(of, design, w, &to->start) == HF_NO_MEMORY) return HF_NO_MEMORY;
+    *g = *of->objectives;
+    g->constraints = NULL;
     to->v = *of;
     to->v.objectives = g;
     to->v.limits = NULL;
     to->v.boundary_ratio_cap = INFINITY;
-    *g = *of->objectives;
-    g->constraints = NULL;
-    hf_status status = hf_objectives_point_create(g, &point);
-    if (status == HF_OK && hf_evaluate(&to->v, design, w, &point, &start) == HF_OK && start.merit > 0)
-        to->weight = start.merit / of->objectives->constraints->psi_most_m;
-    hf_objectives_point_free(&point);
+    hf_status status = evaluate_alone(&to->v, design, w, &r);
     to->v.limits = of->limits;
     to->v.boundary_ratio_cap = of->boundary_ratio_cap;
+    double room_m = fmax(of->objectives->constraints->psi_most_m, LEAST_ROOM * largest_coordinate(of->model));
+    if (status == HF_OK && r.merit > 0) to->weight = r.merit / room_m;
     int n_row = 3 * of->model->n_inner_node;
     g->objective[g->n_objective++] =
         (hf_objective){.settings = {.figure = HF_FIGURE_PSI, .target = NAN, .weight = to->weight, .mass_kg_per_m = NAN},
@@ -787,31 +819,30 @@ static hf_status relax(const hf_evaluator *of, const double *design, hf_workspac
                        .first_row = g->n_row,
                        .n_row = n_row};
     g->n_row += n_row;
-    return status;
+    return status == HF_NO_MEMORY ? status : HF_OK;
 }
 
-/* Sets the result of a run on the relaxation to that of its design in terms of `of`. *falls_short becomes true if dense
- * steps must continue: psi is above its maximum, or so far below it that the other objectives could still fall by more
- * than MAXIMUM_GAIN. Returns the status of the design. */
-static hf_status tighten(const hf_evaluator *of, const relaxation *by, const double *design, hf_workspace *w,
-                         hf_refine_result *r, bool *falls_short)
+/* Sets the result of a run on the relaxation to that of its design in terms of `of`. A start that meets everything and
+ * is not worse remains. Returns HF_OK, or the status of a design that does not keep the maximum. */
+static hf_status tighten(const hf_evaluator *of, const relaxation *by, double *design, hf_workspace *w,
+                         hf_refine_result *r)
 {
-    hf_objectives_point point;
-    hf_form_result end = {.status = HF_NO_MEMORY};
-    if (hf_objectives_point_create(of->objectives, &point) == HF_OK) hf_evaluate(of, design, w, &point, &end);
-    hf_objectives_point_free(&point);
-    *falls_short = end.status != HF_OK && end.status != HF_NO_MEMORY;
-    if (end.status != HF_OK) return end.status;
-    r->start_merit = by->weight * of->objectives->constraints->psi_most_m;
-    r->merit = end.merit;
-    /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
-    double fall = by->weight * by->weight * end.psi_m / end.merit * of->objectives->constraints->psi_most_m / end.merit;
-    *falls_short = fall > MAXIMUM_GAIN;
-    if (fall > SETTLED_GAIN) {
+    hf_form_result end;
+    double most_m = of->objectives->constraints->psi_most_m;
+    hf_status status = evaluate_alone(of, design, w, &end);
+    if (by->start.status == HF_OK && !(status == HF_OK && end.merit <= by->start.merit)) {
+        memcpy(design, by->design, (size_t)of->model->n_variable * sizeof *design);
+        status = evaluate_alone(of, design, w, &end);
+        r->stop = HF_REFINE_STALLED;
+        r->predicted_gain = NAN;
+    } else if (status == HF_OK && r->stop != HF_REFINE_STALLED) {
+        /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
+        double fall = by->weight * by->weight * end.psi_m / end.merit * most_m / end.merit;
         r->predicted_gain = fmax(r->predicted_gain, fmin(1, fall));
-        if (r->stop == HF_REFINE_CONVERGED) r->stop = HF_REFINE_MAX_ITERATIONS;
     }
-    return HF_OK;
+    r->start_merit = by->start.merit;
+    r->merit = end.merit;
+    return status;
 }
 
 hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
@@ -834,33 +865,36 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
     p.v.limits = NULL;
     hf_refine_problem sparse = p; /* comes first where it is faster */
     relaxation relaxed = {.weight = 0};
+    bool has_maximum = evaluator->objectives && evaluator->objectives->constraints;
     sparse.is_sparse =
         !front && hf_refine_is_sparse(evaluator) && !(watcher && hf_refine_was_dense(watcher->n_state, watcher->state));
     sparse.damping = SPARSE_DAMPING_FIRST;
     hf_refine_watcher from_there = watcher ? *watcher : (hf_refine_watcher){0};
     hf_status status = HF_OK;
-    if (sparse.is_sparse) HF_TRY(relax(evaluator, design, w, &relaxed));
-    if (relaxed.weight > 0) {
+    if (sparse.is_sparse && has_maximum) {
+        sparse.is_sparse = is_relaxed(evaluator);
+        if (sparse.is_sparse) status = relax(evaluator, design, w, &relaxed);
+        sparse.is_sparse &= status == HF_OK && relaxed.weight > 0;
         sparse.v.objectives = relaxed.v.objectives;
         sparse.caller = &relaxed.v;
-    } else if (evaluator->objectives && evaluator->objectives->constraints) {
-        sparse.is_sparse = false;
+        sparse.psi_weight = relaxed.weight;
+        sparse.psi_most_m = evaluator->objectives->constraints->psi_most_m;
     }
-    if (sparse.is_sparse) status = run_once(&sparse, max_iterations, design, result);
-    if (status == HF_OK && relaxed.weight > 0 && !sparse.needs_dense) {
-        status = tighten(evaluator, &relaxed, design, w, result, &sparse.needs_dense);
-        sparse.needs_dense &= sparse.n <= DENSE_MOST;
-        if (sparse.needs_dense) status = HF_OK;
-    } else if (sparse.needs_dense && !(relaxed.weight > 0)) { /* from its best design on */
-        hf_refine_pack(&sparse, result);
-        from_there.state = sparse.state;
-        from_there.n_state = sparse.n_state;
+    bool is_tried = sparse.is_sparse;
+    if (is_tried) status = run_once(&sparse, max_iterations, design, result);
+    if (is_tried && has_maximum && !sparse.needs_dense && status == HF_OK)
+        status = tighten(evaluator, &relaxed, design, w, result);
+    if (sparse.needs_dense) { /* from its best design on, or for a maximum of psi from the start */
+        if (!has_maximum) hf_refine_pack(&sparse, result);
+        from_there.state = has_maximum ? NULL : sparse.state;
+        from_there.n_state = has_maximum ? 0 : sparse.n_state;
         p.watcher = &from_there;
     }
-    if (!sparse.is_sparse || (status == HF_OK && sparse.needs_dense)) {
+    if (status == HF_OK && (!is_tried || sparse.needs_dense)) {
         status = run_once(&p, max_iterations, design, result);
         hf_refine_destroy(&p);
     }
     hf_refine_destroy(&sparse);
+    hf_arena_free_block(relaxed.block);
     return status;
 }

@@ -51,7 +51,9 @@ typedef struct {
     hf_quadratic step;                /* for steps by the saddle-point system only x, side and n */
     bool is_sparse;                   /* true: steps by `saddle`, without derivatives by each variable */
     hf_saddle_step saddle;            /* used if is_sparse */
-    bool needs_dense;                 /* a step of `saddle` broke the cap, which is not in its model */
+    bool needs_dense;                 /* dense steps must continue: the cap is broken, or `saddle` leads no farther */
+    double psi_weight, psi_most_m;    /* the last objective replaces a maximum of psi; 0: no */
+    double best_of_others;            /* merit of the best design without the last objective */
     const hf_watch_front *front;      /* the objective to minimise and the limits on the others, or NULL */
     const hf_refine_watcher *watcher; /* NULL: no watcher */
     hf_status told;                   /* the last status of the watcher */
@@ -104,6 +106,9 @@ double hf_refine_rounding(const hf_refine_problem *problem);
 /* Evaluates the design at these steps [n] from `start`; its shape is in the workspace afterwards. Returns the status of
  * hf_evaluate. */
 hf_status hf_refine_evaluate(hf_refine_problem *problem, const double *step);
+
+/* Sets best_of_others to that of the last evaluation. */
+void hf_refine_know(hf_refine_problem *problem);
 
 /* Makes `trial`, whose shape is in the workspace, the best design. */
 void hf_refine_keep(hf_refine_problem *problem);
