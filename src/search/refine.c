@@ -9,7 +9,7 @@
  *     end    -> converged, settled, stalled or max_iterations -> best design
  *
  * A start outside the limits is first moved into them (enter).
- * Contents: what it costs - one step - the run */
+ * Contents: what it costs - one step - the run - a maximum of psi - the call */
 #include "search/refine.h"
 
 #include "base/elementary.h"
@@ -129,9 +129,25 @@ static double count_saddle(const hf_evaluator *v)
     return 6.0 * v->model->n_free * width * width;
 }
 
+static double largest_coordinate(const hf_model *m)
+{
+    return hf_max_magnitude(3 * (size_t)m->n_node, m->position_m);
+}
+
+/* Returns true if there is no requirement but a maximum of psi that leaves no room, and psi is no objective. */
+static bool needs_no_room(const hf_evaluator *v)
+{
+    const hf_objectives *g = v->objectives;
+    if (!g || !g->constraints) return true;
+    for (int k = 0; k < g->n_objective; k++)
+        if (g->objective[k].settings.figure == HF_FIGURE_PSI) return false;
+    return g->n_objective < HF_DESIGN_ROWS_MAX && g->constraints->psi_most_m > 0 &&
+           g->constraints->psi_most_m < NO_ROOM * largest_coordinate(v->model);
+}
+
 bool hf_refine_is_sparse(const hf_evaluator *v)
 {
-    return hf_saddle_step_applies(v) && count_dense(v) > DENSE_UP_TO * count_saddle(v);
+    return hf_saddle_step_applies(v) && needs_no_room(v) && count_dense(v) > DENSE_UP_TO * count_saddle(v);
 }
 
 /* Returns the operations of one step. *evaluation_of_ga receives those of one evaluation of the genetic algorithm. */
@@ -756,6 +772,8 @@ static hf_status run_once(hf_refine_problem *p, int max_iterations, double *desi
     return status;
 }
 
+/* ---- a maximum of psi ---- */
+
 /* The caller's evaluator in which an objective replaces the maximum of psi. Its weight is E / maximum, where E is the
  * merit of the other objectives at the start. Then all designs whose merit is at most E keep the maximum. */
 typedef struct {
@@ -775,21 +793,6 @@ static hf_status evaluate_alone(const hf_evaluator *v, const double *design, hf_
     if (hf_objectives_point_create(v->objectives, &point) == HF_OK) hf_evaluate(v, design, w, &point, r);
     hf_objectives_point_free(&point);
     return r->status;
-}
-
-static double largest_coordinate(const hf_model *m)
-{
-    return hf_max_magnitude(3 * (size_t)m->n_node, m->position_m);
-}
-
-/* Returns true if a maximum of psi is the only requirement, leaves no room, and psi is no objective. */
-static bool is_relaxed(const hf_evaluator *v)
-{
-    const hf_objectives *g = v->objectives;
-    if (!g || !g->constraints || g->n_objective == HF_DESIGN_ROWS_MAX) return false;
-    for (int k = 0; k < g->n_objective; k++)
-        if (g->objective[k].settings.figure == HF_FIGURE_PSI) return false;
-    return g->constraints->psi_most_m > 0 && g->constraints->psi_most_m < NO_ROOM * largest_coordinate(v->model);
 }
 
 /* Makes the relaxation. Without a merit at the start, nothing is replaced. Returns HF_OK or HF_NO_MEMORY. */
@@ -845,6 +848,8 @@ static hf_status tighten(const hf_evaluator *of, const relaxation *by, double *d
     return status;
 }
 
+/* ---- the call ---- */
+
 hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, const double *upper, int max_iterations,
                         const hf_watch_front *front, const hf_refine_watcher *watcher, double *design, hf_workspace *w,
                         hf_refine_result *result)
@@ -872,9 +877,8 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
     hf_refine_watcher from_there = watcher ? *watcher : (hf_refine_watcher){0};
     hf_status status = HF_OK;
     if (sparse.is_sparse && has_maximum) {
-        sparse.is_sparse = is_relaxed(evaluator);
-        if (sparse.is_sparse) status = relax(evaluator, design, w, &relaxed);
-        sparse.is_sparse &= status == HF_OK && relaxed.weight > 0;
+        status = relax(evaluator, design, w, &relaxed);
+        sparse.is_sparse = status == HF_OK && relaxed.weight > 0;
         sparse.v.objectives = relaxed.v.objectives;
         sparse.caller = &relaxed.v;
         sparse.psi_weight = relaxed.weight;

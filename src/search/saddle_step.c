@@ -46,7 +46,6 @@ bool hf_saddle_step_applies(const hf_evaluator *v)
 {
     const hf_model *m = v->model;
     if (v->objectives && v->objectives->nets) return false;
-    if (v->objectives && v->objectives->constraints && !(v->objectives->constraints->psi_most_m > 0)) return false;
     if (m->n_leader != m->n_variable || m->has_strut || (m->n_attachment && !m->truss_stiffness)) return false;
     for (int i = 0; v->limits && i < v->limits->n; i++)
         if (v->limits->row[i].kind != HF_LIMIT_TENSION) return false;

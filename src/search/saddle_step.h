@@ -68,7 +68,7 @@ typedef struct {
 } hf_saddle_step;
 
 /* Returns true if steps of this evaluator can be solved in this way. The cap on the boundary tension ratio is not in
- * the model: the caller must notice steps that break it. Nor is a maximum of psi: the caller must replace it. */
+ * the model: the caller must notice steps that break it. Nor are requirements: the caller must replace them. */
 bool hf_saddle_step_applies(const hf_evaluator *evaluator);
 
 /* Allocates the step. Returns HF_OK or HF_NO_MEMORY; call hf_saddle_step_free in either case. */
