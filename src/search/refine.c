@@ -122,7 +122,7 @@ static double count_dense(const hf_evaluator *v)
     return n * n * ((v->objectives && v->objectives->nets ? v->objectives->n_row : n_row) + 2 * n);
 }
 
-/* Returns the operations of one factorisation of the saddle-point system. */
+/* Returns the operations of one factorisation of the saddle-point system as a band. Nested dissection needs fewer. */
 static double count_saddle(const hf_evaluator *v)
 {
     double width = 6.0 * v->model->half_bandwidth + 6;
@@ -345,13 +345,14 @@ static hf_status bend_step(hf_refine_problem *p, double before, double gain)
     bool is_best = !p->is_sparse || hf_watch_keeps(&p->watch, p->w); /* the step in the workspace is the best one */
     double last = p->result.merit, merit = is_best ? last : (double)INFINITY;
     double below = p->is_sparse ? SPARSE_BEND_BELOW : BEND_BELOW;
+    hf_status shape = HF_OK; /* of the last evaluation */
     memcpy(p->step_taken, p->step.x, size);
     for (int again = 0; again < (p->is_sparse ? SPARSE_BENDS_MAX : BENDS_MAX); again++) {
         if (is_best && before - merit * merit / 2 > below * gain) break;
         if (hf_residuals_find(&p->residuals, p->w) != HF_OK) break;
         if (p->is_sparse) hf_saddle_step_learn(&p->saddle, &p->watch);
         hf_status status = solve_bent(p);
-        if (status == HF_OK) status = take_step(p);
+        if (status == HF_OK) status = shape = take_step(p);
         if (status == HF_INTERRUPTED || status == HF_NO_MEMORY) return status;
         bool keeps = status == HF_OK && hf_watch_keeps(&p->watch, p->w), goes_on = is_worth(p, last, gain);
         is_best = keeps && p->result.merit < merit;
@@ -365,7 +366,7 @@ static hf_status bend_step(hf_refine_problem *p, double before, double gain)
         last = p->result.merit;
     }
     if (is_best) return HF_OK;
-    if (!isfinite(merit)) return HF_RATIO_CAP;
+    if (!isfinite(merit)) return shape == HF_OK ? HF_RATIO_CAP : shape;
     memcpy(p->step.x, p->step_taken, size);
     if (merit * merit / 2 < before) return take_step(p);
     p->result.merit = merit; /* the step fails, so its shape is not needed */
@@ -503,8 +504,10 @@ static hf_status enter(hf_refine_problem *p, int max_iterations, hf_refine_resul
         if (p->is_sparse) hf_watch_forget(&p->watch);
         hf_status status = solve_step(p, p->damping, &gain);
         if (status == HF_OK || (p->is_sparse && status == HF_DIFFERENT)) status = take_step(p);
-        if (status == HF_OK && p->is_sparse) status = bend_step(p, INFINITY, gain);
-        if (status == HF_RATIO_CAP) status = HF_OK; /* it is nearer or not */
+        if (status == HF_OK && p->is_sparse) {
+            status = bend_step(p, INFINITY, gain);
+            if (status == HF_RATIO_CAP) status = HF_OK; /* it may still be nearer */
+        }
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double after = status == HF_OK ? hf_watch_violation(&p->watch, p->w) : (double)INFINITY;
         bool is_inside = status == HF_OK && hf_watch_keeps(&p->watch, p->w),
@@ -624,7 +627,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
 {
     double gain = 0, converged = p->front ? FRONT_CONVERGED : GAIN_CONVERGED;
     hf_status status = hf_refine_evaluate(p, p->at);
-    hf_refine_know(p);
+    p->best_of_others = hf_refine_others(p, &p->result);
     if (status == HF_OK && !is_zero(p, r) && !is_scaled_first(p, max_iterations, r)) status = hf_refine_linearise(p);
     if (status == HF_OK && p->front) {
         r->merit = hf_refine_merit(p, &p->result);
@@ -700,6 +703,15 @@ static void count_limits(const hf_refine_problem *p, const double *design, hf_re
     }
 }
 
+/* Returns true if the end of a run is not worse than a start within the limits. If an objective replaces a maximum of
+ * psi, a start that keeps the maximum is worse only than ends that keep it, too, by the other objectives. */
+static bool is_not_worse(const hf_refine_problem *p, const hf_form_result *end, const hf_form_result *start)
+{
+    if (!(p->psi_weight > 0) || start->psi_m > p->psi_most_m)
+        return hf_refine_merit(p, end) <= hf_refine_merit(p, start);
+    return end->psi_m <= p->psi_most_m && hf_refine_others(p, end) <= hf_refine_others(p, start);
+}
+
 /* Replaces `design` by the best design if the caller's evaluator finds that it keeps all limits and is not worse than
  * the start. Otherwise the start remains, without multipliers, which belong to another design. Returns HF_OK, or the
  * status of a start outside the limits if nothing feasible was found. */
@@ -709,7 +721,7 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
     hf_objectives_point *point = hf_residuals_point(&p->residuals);
     bool is_better = hf_evaluate(p->caller, p->best, p->w, point, &end) == HF_OK &&
                      !hf_watch_breaks(p->front, p->v.objectives, HF_LIMITS_AT, end.objective) &&
-                     (start->status != HF_OK || hf_refine_merit(p, &end) <= hf_refine_merit(p, start));
+                     (start->status != HF_OK || is_not_worse(p, &end, start));
     if (!is_better && start->status != HF_OK) return start->status;
     if (is_better) memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (!is_better) {
@@ -779,10 +791,8 @@ static hf_status run_once(hf_refine_problem *p, int max_iterations, double *desi
 typedef struct {
     hf_evaluator v;
     hf_objectives objectives;
-    hf_form_result start; /* of the caller's evaluator */
-    double *design;       /* [n_variable] the start */
-    double weight;        /* 0: nothing is replaced */
-    void *block;
+    double weight;      /* 0: nothing is replaced */
+    double start_merit; /* of the caller's evaluator; NaN if the start is infeasible */
 } relaxation;
 
 /* Evaluates a design with its objectives, of which it makes and frees the scratch. */
@@ -798,54 +808,42 @@ static hf_status evaluate_alone(const hf_evaluator *v, const double *design, hf_
 /* Makes the relaxation. Without a merit at the start, nothing is replaced. Returns HF_OK or HF_NO_MEMORY. */
 static hf_status relax(const hf_evaluator *of, const double *design, hf_workspace *w, relaxation *to)
 {
-    hf_form_result r;
+    hf_form_result start;
     hf_objectives *g = &to->objectives;
-    size_t n_variable = (size_t)of->model->n_variable;
-    HF_TRY(HF_ARENA_ARRAYS(&to->block, HF_ARRAY(to->design, n_variable)));
-    memcpy(to->design, design, n_variable * sizeof *design);
-    if (evaluate_alone(of, design, w, &to->start) == HF_NO_MEMORY) return HF_NO_MEMORY;
-    *g = *of->objectives;
-    g->constraints = NULL;
+    int n_row = 3 * of->model->n_inner_node;
+    if (evaluate_alone(of, design, w, &start) == HF_NO_MEMORY) return HF_NO_MEMORY;
+    to->start_merit = start.merit;
     to->v = *of;
     to->v.objectives = g;
-    to->v.limits = NULL;
-    to->v.boundary_ratio_cap = INFINITY;
-    hf_status status = evaluate_alone(&to->v, design, w, &r);
-    to->v.limits = of->limits;
-    to->v.boundary_ratio_cap = of->boundary_ratio_cap;
+    *g = *of->objectives;
+    g->constraints = NULL;
     double room_m = fmax(of->objectives->constraints->psi_most_m, LEAST_ROOM * largest_coordinate(of->model));
-    if (status == HF_OK && r.merit > 0) to->weight = r.merit / room_m;
-    int n_row = 3 * of->model->n_inner_node;
+    double merit = hf_status_has_shape(start.status) ? hf_refine_norm(g, g->n_objective, &start) : 0;
+    to->weight = isfinite(merit) ? merit / room_m : 0;
     g->objective[g->n_objective++] =
         (hf_objective){.settings = {.figure = HF_FIGURE_PSI, .target = NAN, .weight = to->weight, .mass_kg_per_m = NAN},
                        .n_shape_row = n_row,
                        .first_row = g->n_row,
                        .n_row = n_row};
     g->n_row += n_row;
-    return status == HF_NO_MEMORY ? status : HF_OK;
+    return HF_OK;
 }
 
-/* Sets the result of a run on the relaxation to that of its design in terms of `of`. A start that meets everything and
- * is not worse remains. Returns HF_OK, or the status of a design that does not keep the maximum. */
-static hf_status tighten(const hf_evaluator *of, const relaxation *by, double *design, hf_workspace *w,
+/* Sets the result of a run on the relaxation to that of its design in terms of `of`. Returns the status of the
+ * design. */
+static hf_status tighten(const hf_evaluator *of, const relaxation *by, const double *design, hf_workspace *w,
                          hf_refine_result *r)
 {
     hf_form_result end;
-    double most_m = of->objectives->constraints->psi_most_m;
-    hf_status status = evaluate_alone(of, design, w, &end);
-    if (by->start.status == HF_OK && !(status == HF_OK && end.merit <= by->start.merit)) {
-        memcpy(design, by->design, (size_t)of->model->n_variable * sizeof *design);
-        status = evaluate_alone(of, design, w, &end);
-        r->stop = HF_REFINE_STALLED;
-        r->predicted_gain = NAN;
-    } else if (status == HF_OK && r->stop != HF_REFINE_STALLED) {
-        /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
-        double fall = by->weight * by->weight * end.psi_m / end.merit * most_m / end.merit;
-        r->predicted_gain = fmax(r->predicted_gain, fmin(1, fall));
-    }
-    r->start_merit = by->start.merit;
+    HF_TRY(evaluate_alone(of, design, w, &end));
+    r->start_merit = by->start_merit;
     r->merit = end.merit;
-    return status;
+    if (r->stop == HF_REFINE_STALLED) return HF_OK;
+    /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
+    double fall = by->weight * by->weight * end.psi_m / end.merit;
+    double part = fall * of->objectives->constraints->psi_most_m / end.merit;
+    r->predicted_gain = fmax(r->predicted_gain, fmin(1, part));
+    return HF_OK;
 }
 
 /* ---- the call ---- */
@@ -884,9 +882,8 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
         sparse.psi_weight = relaxed.weight;
         sparse.psi_most_m = evaluator->objectives->constraints->psi_most_m;
     }
-    bool is_tried = sparse.is_sparse;
-    if (is_tried) status = run_once(&sparse, max_iterations, design, result);
-    if (is_tried && has_maximum && !sparse.needs_dense && status == HF_OK)
+    if (sparse.is_sparse) status = run_once(&sparse, max_iterations, design, result);
+    if (sparse.is_sparse && has_maximum && !sparse.needs_dense && status == HF_OK)
         status = tighten(evaluator, &relaxed, design, w, result);
     if (sparse.needs_dense) { /* from its best design on, or for a maximum of psi from the start */
         if (!has_maximum) hf_refine_pack(&sparse, result);
@@ -894,11 +891,10 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
         from_there.n_state = has_maximum ? 0 : sparse.n_state;
         p.watcher = &from_there;
     }
-    if (status == HF_OK && (!is_tried || sparse.needs_dense)) {
+    if (status == HF_OK && (!sparse.is_sparse || sparse.needs_dense)) {
         status = run_once(&p, max_iterations, design, result);
         hf_refine_destroy(&p);
     }
     hf_refine_destroy(&sparse);
-    hf_arena_free_block(relaxed.block);
     return status;
 }

@@ -163,15 +163,14 @@ hf_status hf_refine_evaluate(hf_refine_problem *p, const double *step)
     return hf_evaluate(&p->v, p->design, p->w, hf_residuals_point(&p->residuals), &p->result);
 }
 
-void hf_refine_know(hf_refine_problem *p)
+double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_result *r)
 {
-    const hf_objectives *g = p->v.objectives;
-    double sum = 0;
-    for (int k = 0; g && k < g->n_objective - 1; k++) {
-        double value = g->objective[k].settings.weight * p->result.objective[k];
-        sum += value * value;
+    double square = 0;
+    for (int k = 0; k < n; k++) {
+        double value = objectives->objective[k].settings.weight * r->objective[k];
+        square += value * value;
     }
-    p->best_of_others = sqrt(sum);
+    return sqrt(square);
 }
 
 void hf_refine_keep(hf_refine_problem *p)
@@ -179,7 +178,7 @@ void hf_refine_keep(hf_refine_problem *p)
     const hf_model *m = p->v.model;
     memcpy(p->at, p->trial, (size_t)p->n * sizeof(double));
     p->best_psi_m = p->result.psi_m;
-    hf_refine_know(p);
+    p->best_of_others = hf_refine_others(p, &p->result);
     for (int k = 0; k < m->n_variable; k++)
         p->best[k] = hf_refine_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
 }

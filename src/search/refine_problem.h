@@ -53,7 +53,7 @@ typedef struct {
     hf_saddle_step saddle;            /* used if is_sparse */
     bool needs_dense;                 /* dense steps must continue: the cap is broken, or `saddle` leads no farther */
     double psi_weight, psi_most_m;    /* the last objective replaces a maximum of psi; 0: no */
-    double best_of_others;            /* merit of the best design without the last objective */
+    double best_of_others;            /* hf_refine_others of the best design */
     const hf_watch_front *front;      /* the objective to minimise and the limits on the others, or NULL */
     const hf_refine_watcher *watcher; /* NULL: no watcher */
     hf_status told;                   /* the last status of the watcher */
@@ -107,8 +107,15 @@ double hf_refine_rounding(const hf_refine_problem *problem);
  * hf_evaluate. */
 hf_status hf_refine_evaluate(hf_refine_problem *problem, const double *step);
 
-/* Sets best_of_others to that of the last evaluation. */
-void hf_refine_know(hf_refine_problem *problem);
+/* Returns the merit of the first n objectives of a shape, which may be infeasible. */
+double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_result *result);
+
+/* Returns the merit without the objective that replaces a maximum of psi, or 0 if there is none. */
+static inline double hf_refine_others(const hf_refine_problem *problem, const hf_form_result *result)
+{
+    const hf_objectives *objectives = problem->v.objectives;
+    return problem->psi_weight > 0 ? hf_refine_norm(objectives, objectives->n_objective - 1, result) : 0;
+}
 
 /* Makes `trial`, whose shape is in the workspace, the best design. */
 void hf_refine_keep(hf_refine_problem *problem);
