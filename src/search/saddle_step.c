@@ -113,13 +113,10 @@ hf_status hf_saddle_step_create(const hf_evaluator *v, int n_row, hf_saddle_step
         to->cable[e].variable = -1;
     for (int k = 0; k < m->n_variable; k++)
         to->cable[m->variable_cable[k]].variable = k;
-    for (int i = 0; i < 6 * to->n; i++) {
-        int row = i / 6, held = row < m->n_free + m->n_attachment ? row - m->n_free : row - m->n_node + m->n_attachment;
-        if (row >= m->n_free + m->n_attachment && row < m->n_node)
-            to->is_held[i] = true;
-        else if (held >= 0)
-            to->is_held[i] = m->truss_stiffness->is_held[3 * held + i % 3];
-    }
+    for (int i = 6 * (m->n_free + m->n_attachment); i < 6 * m->n_node; i++)
+        to->is_held[i] = true;
+    for (int i = 0; m->truss_stiffness && i < 6 * m->truss_stiffness->n; i++)
+        to->is_held[6 * row_of_truss(m, i / 6) + i % 6] = m->truss_stiffness->is_held[3 * (i / 6) + i % 3];
     return create_matrix(to);
 }
 

@@ -84,7 +84,8 @@ void hf_saddle_step_limit(hf_saddle_step *step, const hf_watch *watch);
 /* Finds the step x [n_variable] that minimises the model with this damping within down and up [n_variable] and the
  * limits of tensions. unit [n_variable]: magnitudes of the variables. side [n_variable]: the active limits at which the
  * search begins, then those of the step, as in hf_saddle_cable. *gain receives the decrease of |f|^2/2 that the model
- * promises. Returns HF_OK, HF_SINGULAR, or HF_DIFFERENT if the active set does not settle. */
+ * promises. Returns HF_OK, HF_SINGULAR, or HF_DIFFERENT if the active set does not settle; x is then the last step,
+ * which may break limits. */
 hf_status hf_saddle_step_solve(hf_saddle_step *step, double damping, const double *down, const double *up,
                                const double *unit, int *side, double *x, double *gain);
 
