@@ -163,10 +163,10 @@ START_TEST(many_variables_reach_what_dense_steps_reach)
           "optimize.refine_steps=15");
     EXPECT(other, "--", "a['refine'].attrs['boundary_tension_ratio'] <= 1.3", "a['refine'].attrs['psi_m'] < 1e-6",
            "a['refine'].attrs['steps'] == 15", "a['refine'].attrs['merit'] < 2e-7");
-    HIFDM(0, "run", c, "-o", other, "--quiet", "--force", "--set", "optimize.refine_steps=15", "--set",
+    HIFDM(0, "run", c, "-o", other, "--quiet", "--force", "--set", "optimize.refine_steps=5", "--set",
           "optimize.limits=[{figure: tension, set: all, bounds: [3, 40]}]"); /* the start breaks it */
     EXPECT(other, "--", "a['form/tension_N'][:].min() < 2.5", "a['refine/tension_N'][:].min() >= 3 * (1 - 1e-8)",
-           "a['refine/tension_N'][:].max() <= 40 * (1 + 1e-8)", "(a['refine/tension_N'][:] < 3.0001).any()",
+           "a['refine/tension_N'][:].max() <= 40 * (1 + 1e-8)", "(a['refine/tension_N'][:] < 3.0001).sum() >= 6",
            "a['refine'].attrs['psi_m'] < 1e-6");
 }
 END_TEST
