@@ -64,7 +64,7 @@ void hf_print_steps(const hf_refine_summary *r, FILE *f)
             why[r->algorithm_stop]);
     if (r->algorithm_stop == HF_REFINE_CONVERGED || !isfinite(r->predicted_gain)) return;
     bool is_refuted = r->algorithm_stop != HF_REFINE_MAX_ITERATIONS && r->predicted_gain > REFUTED;
-    fprintf(f, "%s the model predicts at most %.2g %% less",
+    fprintf(f, "%s the model predicts at most %.3g %% less",
             r->algorithm_stop == HF_REFINE_MAX_ITERATIONS ? ":"
             : is_refuted                                  ? ", although"
                                                           : ",",

@@ -696,6 +696,15 @@ void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf
                what, what_to_widen(p));
 }
 
+/* Returns true if the shape in the workspace misses a maximum of psi, the only requirement, by less than the tolerance of
+ * the coupling: another shape of the same design may meet it. */
+static bool misses_by_tolerance(const hf_problem *p)
+{
+    const hf_constraints *c = hf_problem_constraints_of(p);
+    return p->model.n_attachment && c && c->psi_most_m > 0 &&
+           hf_metrics_psi_m(&p->model, &p->workspace) < c->psi_most_m + p->settings.form.coupling.tof_m;
+}
+
 const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const double *design, hf_status status,
                                    const char *advice, char text[HF_NO_DESIGN_SIZE])
 {
@@ -703,6 +712,8 @@ const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const d
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
     name_broken(p, design, &start, broken);
     const char *wider = p->model.variable ? "Widen the ranges and bounds of optimize.variables, " : "";
+    if (start.status == HF_OUT_OF_LIMITS && misses_by_tolerance(p))
+        wider = "Lower coupling.tof_m and form.residual_tolerance, which bound the accuracy of psi, ";
     char where[128] = "", factor[64] = "";
     double least, most;
     hf_variables_scales(&p->model, initial, design, &least, &most);

@@ -127,7 +127,7 @@ static void warn_of_steps(const steps *q, const hf_refine_result *r)
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
     if (n > 0) snprintf(lately, sizeof lately, ": the last %d steps lowered %s by %.2g %%", n, what, 100 * gain);
     if (isfinite(r->predicted_gain))
-        snprintf(predicted, sizeof predicted, "; the model predicts at most %.2g %% less", 100 * r->predicted_gain);
+        snprintf(predicted, sizeof predicted, "; the model predicts at most %.3g %% less", 100 * r->predicted_gain);
     if (r->predicted_gain > WORTH && gain > WORTH)
         hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps. Better designs are near%s%s. %s",
                    r->iterations, lately, predicted,

@@ -151,6 +151,19 @@ double hf_refine_merit(const hf_refine_problem *p, const hf_form_result *r)
     return p->v.objectives->objective[p->front->least].settings.figure == HF_FIGURE_RATIO ? log(value) : value;
 }
 
+/* Sets the status of a shape in which a cable that the design gives a tension is too short for the law tension. The
+ * caller's evaluator would refuse the design. */
+static void refuse_collapsed(hf_refine_problem *p)
+{
+    const hf_model *m = p->v.model;
+    for (int k = 0; k < m->n_variable; k++) {
+        int e = m->variable_cable[k];
+        if (!hf_refine_is_tension(p, k) || p->w->length_m[e] >= p->v.form->collapse_ratio * m->length_m[e]) continue;
+        p->result.status = HF_COLLAPSED;
+        p->result.culprit = e;
+    }
+}
+
 hf_status hf_refine_evaluate(hf_refine_problem *p, const double *step)
 {
     const hf_model *m = p->v.model;
@@ -160,7 +173,9 @@ hf_status hf_refine_evaluate(hf_refine_problem *p, const double *step)
         p->design[k] = hf_refine_is_tension(p, k) ? value : fmax(p->lower[k], fmin(p->upper[k], value));
     }
     p->evaluations++;
-    return hf_evaluate(&p->v, p->design, p->w, hf_residuals_point(&p->residuals), &p->result);
+    hf_evaluate(&p->v, p->design, p->w, hf_residuals_point(&p->residuals), &p->result);
+    if (hf_status_has_shape(p->result.status)) refuse_collapsed(p);
+    return p->result.status;
 }
 
 double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_result *r)

@@ -203,6 +203,43 @@ START_TEST(evenness_falls_under_a_maximum_of_psi)
 }
 END_TEST
 
+/* With variables of tension, a run keeps to shapes that the law tension has: the minimum of this objective would be
+ * a tie of 5 cm, but form.collapse_ratio refuses ties below half of their length. */
+START_TEST(a_run_keeps_to_shapes_of_the_law_tension)
+{
+    const char *c = file_with(
+        "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}}\n"
+                  "form: {pretension_N: 10, prestress: exact, collapse_ratio: 0.5}\n"
+                  "optimize:\n  method: lm\n"
+                  "  variables: [{set: all, vary: tension, bounds: [0.1, 100]}]\n"
+                  "  objective: [{figure: length, set: tie, target: 0.05}]\n");
+    const char *out = temp("r.h5");
+    HIFDM(0, "run", c, "-o", out);
+    EXPECT(out, "--", "a['form'].attrs['merit'] > 0.8", "a['refine'].attrs['merit'] < 0.4",
+           "(a['refine/length_m'][:] / a['form/length_m'][:]).min() > 0.4999");
+}
+END_TEST
+
+/* psi is known to about coupling.tof_m. A maximum far below it is missed by less than that, and met with a smaller
+ * tolerance. */
+START_TEST(a_maximum_of_psi_below_the_tolerances_names_them)
+{
+    const char *c = file_with(
+        "c.yaml", "scene: {paraboloid: {aperture_m: 12, focal_length_m: 6, rings: 6, rear_distance_m: 3.6}}\n"
+                  "form: {pretension_N: 10, prestress: exact}\n"
+                  "truss: {ring: {cells_per_bay: 1, held: bay, longeron: {diameter_m: 0.03, wall_m: 0.001}}}\n"
+                  "optimize:\n  method: lm\n  refine_steps: 40\n"
+                  "  variables: [{set: all, vary: tension, bounds: [1, 60]}]\n"
+                  "  objective: [{figure: evenness, set: front}]\n"
+                  "requirements: [{figure: psi, at_most: 1e-11}]\n");
+    const char *out = temp("r.h5");
+    HIFDM(3, "run", c, "-o", out);
+    ERR("Lower coupling.tof_m and form.residual_tolerance, which bound the accuracy of psi, or loosen the limits");
+    HIFDM(0, "run", c, "-o", out, "--force", "--set", "coupling.tof_m=1e-12", "--set", "form.residual_tolerance=1e-12");
+    OUT("verdict: pass");
+}
+END_TEST
+
 /* Evenness has no value where all tensions are zero, and a weight without end none at all: no design at all. */
 START_TEST(a_merit_without_a_value_is_no_merit)
 {
@@ -361,6 +398,8 @@ Suite *suite_cli_limits(void)
     tcase_add_test(tests, a_start_just_above_a_cap_of_many_cables_is_led_in);
     tcase_add_test(tests, many_variables_reach_what_dense_steps_reach);
     tcase_add_test(tests, evenness_falls_under_a_maximum_of_psi);
+    tcase_add_test(tests, a_run_keeps_to_shapes_of_the_law_tension);
+    tcase_add_test(tests, a_maximum_of_psi_below_the_tolerances_names_them);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
     tcase_add_test(tests, scipy_gains_nothing_on_objectives);
