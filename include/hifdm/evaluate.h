@@ -35,14 +35,6 @@ hf_status hf_evaluate_form(const hf_model *model, const hf_form_settings *form, 
 hf_status hf_evaluate_prepared(const hf_model *model, const hf_form_settings *form, hf_workspace *workspace,
                                hf_history *history, hf_form_result *result);
 
-/* Describes one row of optimize.limits. A row of optimize.limits bounds a quantity of the shape. */
-typedef struct {
-    hf_limit_kind kind;  /* the quantity */
-    double lower, upper; /* bounds in the unit of the quantity; an open side is infinite */
-    int n_cable;         /* number of cables of the row; 0 for displacements of attachments */
-    int *cable;          /* [n_cable] cables whose tensions or tension ratio are bounded */
-} hf_limit;
-
 /* Contains the rows of optimize.limits, prepared for the model. */
 typedef struct {
     int n;         /* number of rows; 0: there are no limits */

@@ -92,6 +92,14 @@ static inline int hf_objectives_nets_count(const hf_objectives_nets *nets)
  * Returns the rates of the attachment displacements [3 n_attachment]. */
 typedef const double *hf_constraints_spread(const void *context, int i_rate, double *move_m, double *tension_rate);
 
+/* Describes bounds of a quantity of the shape: a row of optimize.limits, or a constraint. */
+typedef struct {
+    hf_limit_kind kind;  /* the quantity */
+    double lower, upper; /* bounds in the unit of the quantity; an open side is infinite */
+    int n_cable;         /* number of cables of the row; 0 for displacements of attachments */
+    const int *cable;    /* [n_cable] cables whose tensions or tension ratio are bounded */
+} hf_limit;
+
 /* Describes the constraints that rows of `requirements` set on designs (METHOD section 14). The module
  * built/constraints.h makes them. This module calls the functions through pointers because built/constraints.h depends
  * on this module. A constraint is the signed distance of a figure from its bound. A design is feasible if no distance
@@ -111,7 +119,10 @@ typedef struct hf_constraints {
     /* Computes rate [n][n_rate], the derivatives of the smooth distances of the design measured last. Returns HF_OK or
      * HF_NO_MEMORY. */
     hf_status (*linearise)(void *room, int n_rate, hf_constraints_spread *spread, const void *context, double *rate);
-    double psi_most_m; /* maximum psi of the design if this is the only constraint, otherwise 0 */
+    double psi_most_m; /* maximum psi of the design, or 0 if no constraint is about it */
+    int psi;           /* constraint of this maximum */
+    /* [n] the same constraint as a limit on each cable or attachment of the design; NULL: it is none */
+    const hf_limit *const *limit;
 } hf_constraints;
 
 /* Contains the objectives of a case, prepared for the model. The objectives do not change after creation. Threads can
@@ -127,7 +138,8 @@ typedef struct {
     hf_objective objective[HF_DESIGN_ROWS_MAX]; /* [n_objective] the objectives */
     const hf_objectives_nets *nets;    /* as-built nets, borrowed; NULL if no objective is measured on as-built nets */
     const hf_constraints *constraints; /* constraints by requirements, borrowed; NULL: none */
-    void *block;                       /* owned memory behind the arrays */
+    bool replaces_psi; /* true: the last objective replaces the constraint on psi, which is not judged */
+    void *block;       /* owned memory behind the arrays */
 } hf_objectives;
 
 /* Contains the memory of one thread for the objectives. In addition to scratch memory, the struct contains the data

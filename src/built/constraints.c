@@ -586,6 +586,27 @@ static hf_status open_room(const hf_constraints *as, void **room)
     return c->nets ? c->nets->as.open(&c->nets->as, &kept->nets) : HF_OK;
 }
 
+/* Writes a constraint as a limit on each cable or attachment. Returns false if it is none: it is about a load case or
+ * samples, or its figure is not one of single cables or attachments. */
+static bool write_limit(const hf_built_constraints *c, int k, hf_limit *to)
+{
+    const hf_required *q = c->required;
+    const hf_requirement_settings *r = &q->row[c->row[k]];
+    const hf_required_column *column = &q->column[c->is_high[k] ? q->high[c->row[k]] : q->low[c->row[k]]];
+    double bound = c->is_high[k] ? r->at_most : r->at_least;
+    *to = (hf_limit){.lower = -INFINITY, .upper = INFINITY, .n_cable = column->n_cable, .cable = column->cable};
+    *(c->is_high[k] ? &to->upper : &to->lower) = bound;
+    if (c->state[k] != 0) return false;
+    if (r->figure == HF_REQUIRED_SLACK) {
+        to->lower = HF_SLACK_RATIO * c->model->reference_N;
+        to->upper = INFINITY;
+        return bound < 1;
+    }
+    if (r->figure == HF_REQUIRED_RATIO) to->kind = HF_LIMIT_RATIO;
+    if (r->figure == HF_REQUIRED_DEFLECTION) to->kind = HF_LIMIT_DEFLECTION;
+    return r->figure == HF_REQUIRED_TENSION || (c->is_high[k] && to->kind != HF_LIMIT_TENSION);
+}
+
 /* Adds a constraint. It is only counted while there is no memory. */
 static void add(hf_built_constraints *c, int i_row, int state, bool is_high)
 {
@@ -628,14 +649,22 @@ hf_status hf_built_constraints_make(const hf_required *q, const hf_model *m, con
         .n_facet = facets ? facets->n_facet : 0};
     list(c);
     HF_TRY(HF_ARENA_ARRAYS(&c->block, HF_ARRAY(c->corner_row, 4 * (size_t)c->n_facet), HF_ARRAY(c->row, c->as.n),
-                           HF_ARRAY(c->state, c->as.n), HF_ARRAY(c->is_high, c->as.n), HF_ARRAY(c->unit, c->as.n)));
+                           HF_ARRAY(c->state, c->as.n), HF_ARRAY(c->is_high, c->as.n), HF_ARRAY(c->unit, c->as.n),
+                           HF_ARRAY(c->limit, c->as.n), HF_ARRAY(c->as_limit, c->as.n)));
     list(c);
     for (int i = 0; i < 4 * c->n_facet; i++)
         c->corner_row[i] = m->row_of_node[facets->corner[i]];
     c->as.unit = c->unit;
-    if (c->as.n == 1 && q->row[c->row[0]].figure == HF_REQUIRED_PSI && c->state[0] == 0 && c->is_high[0])
-        c->as.psi_most_m = q->row[c->row[0]].at_most;
+    c->as.limit = c->as_limit;
+    for (int k = 0; k < c->as.n; k++)
+        c->as_limit[k] = write_limit(c, k, &c->limit[k]) ? &c->limit[k] : NULL;
     for (int k = 0; k < c->as.n; k++) {
+        double most_m = q->row[c->row[k]].at_most;
+        bool is_psi = q->row[c->row[k]].figure == HF_REQUIRED_PSI && c->state[k] == 0 && c->is_high[k];
+        if (is_psi && (c->as.psi_most_m == 0 || most_m < c->as.psi_most_m)) {
+            c->as.psi_most_m = most_m;
+            c->as.psi = k;
+        }
         c->needs_surface |= hf_required_is_of(q->row[c->row[k]].figure, HF_REQUIRED_OF_SURFACE);
         c->needs_radio |= hf_required_is_of(q->row[c->row[k]].figure, HF_REQUIRED_OF_RADIO);
     }

@@ -29,6 +29,8 @@ typedef struct {
     int *state;                               /* [as.n] its load case; -1: all of its row */
     bool *is_high;                            /* [as.n] which bound of its row, if it has a load case */
     double *unit;                             /* [as.n] as.unit */
+    hf_limit *limit;                          /* [as.n] those of as.limit */
+    const hf_limit **as_limit;                /* [as.n] as.limit */
     int state_of_samples[HF_REQUIRED_STATES]; /* state of the samples (built_nets.h) in each load case, -1: none */
     void *block;
 } hf_built_constraints;

@@ -187,21 +187,27 @@ static hf_status between_restarted_steps(void *context, const hf_refine_progress
     return hf_run_must_stop(q->run) ? HF_INTERRUPTED : HF_OK;
 }
 
-/* Refines the design of a finished refinement from other starts, if the method asks for it. They are not stored: a
- * resumed run takes them again. Returns HF_OK, HF_INTERRUPTED or HF_NO_MEMORY. */
-static hf_status restart_steps(hf_run *r, hf_summary *s, hf_refine_result *outcome, hf_messages *messages)
+/* Refines from other starts after a refinement that has ended with this status, if the method asks for it. They are not
+ * stored: a resumed run takes them again. Returns HF_OK, HF_INTERRUPTED, HF_NO_MEMORY, or `status` if no design is
+ * feasible. */
+static hf_status restart_steps(hf_run *r, hf_summary *s, hf_status status, hf_refine_result *outcome,
+                               hf_messages *messages)
 {
     hf_problem *p = &r->problem;
     hf_stage_summary *to = &s->stage[HF_STAGE_REFINE];
     steps q = {.run = r, .summary = s, .messages = messages, .begin_s = hf_clock_s()};
     hf_refine_watcher watcher = {.after = between_restarted_steps, .context = &q};
-    if (p->settings.optimize.method != HF_OPTIMIZE_AUTO || outcome->stop == HF_REFINE_MAX_ITERATIONS) return HF_OK;
+    if (p->settings.optimize.method != HF_OPTIMIZE_AUTO) return status;
+    if (status == HF_OK ? outcome->stop == HF_REFINE_MAX_ITERATIONS : !hf_status_has_shape(status)) return status;
     free(to->optima); /* of an earlier session */
     to->optima = calloc(1, sizeof *to->optima);
     if (!to->optima) return HF_NO_MEMORY;
-    hf_status status = hf_restart_run(&p->batch, &r->optimiser.population, p->settings.optimize.refine_steps, &watcher,
-                                      r->design, &p->workspace, outcome, to->optima);
+    status = hf_restart_run(&p->batch, &r->optimiser.population, p->settings.optimize.refine_steps, &watcher, r->design,
+                            &p->workspace, outcome, to->optima);
     to->wall_s += hf_clock_s() - q.begin_s;
+    if (to->optima->n > 0) return status;
+    free(to->optima);
+    to->optima = NULL;
     return status;
 }
 
@@ -253,7 +259,7 @@ hf_status hf_stage_refine(hf_run *r, hf_summary *s, hf_messages *messages)
     for (int k = 0; k < bounds->n_variable; k++) /* the initial design may violate the bounds */
         r->design[k] = hf_population_clamp(bounds, k, r->design[k]);
     hf_status status = find_steps(r, s, &outcome, messages);
-    if (status == HF_OK) status = restart_steps(r, s, &outcome, messages);
+    status = restart_steps(r, s, status, &outcome, messages);
     if (status == HF_NO_MEMORY) return hf_error(messages, status, "out of memory for the sensitivities");
     if (status == HF_INTERRUPTED || status == HF_IO || status == HF_EXISTS) return status;
     if (status != HF_OK) return tell_no_design(r, s, status, messages);

@@ -24,9 +24,11 @@
 #include <string.h>
 
 /* Brackets contain the range in which no test of this module and of cli/limits fails, as far as it was tried. */
-#define GAIN_CONVERGED 1e-12  /* converged: a step promises less than this part of merit^2 [1e-15 to 1e-8] */
-#define FRONT_CONVERGED 1e-20 /* converged, for a point of a front: its multipliers must be accurate */
-#define DAMPING_FIRST 1e-3    /* first damping, relative to the squared columns of J [1e-6 to 1] */
+#define GAIN_CONVERGED 1e-12    /* converged: a step promises less than this part of merit^2 [1e-15 to 1e-8] */
+#define UNDAMPED_CONVERGED 1e-6 /* converged: without damping, the model promises less than this part of the merit */
+#define DAMPING_TOO_MUCH 1e-3   /* factor of a damping that has hidden what the model promises */
+#define FRONT_CONVERGED 1e-20   /* converged, for a point of a front: its multipliers must be accurate */
+#define DAMPING_FIRST 1e-3      /* first damping, relative to the squared columns of J [1e-6 to 1] */
 /* The multipliers and the gain that the model still predicts are found with this damping, which is nearly none. */
 #define DAMPING_NEARLY_NONE 1e-9
 /* The damping of steps by the saddle-point system is relative to the merit (saddle_step.h). With less of it first, many
@@ -67,9 +69,22 @@
 #define SETTLED_SLOW 0.25
 #define SETTLED_GAIN 1e-4
 #define SETTLED_OBJECTIVE 1e-3
-#define NO_ROOM 1e-8     /* a maximum of psi leaves no room if it is below this part of the largest coordinate */
-#define LEAST_ROOM 1e-11 /* the weight is that of no smaller part, because rounding of positions would hide the merit */
-#define BEND_WORTH 0.5   /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
+/* An objective replaces a maximum of psi. Its weight is adapted until the other objectives could gain less than ROOM_LEFT
+ * of their merit by more psi. WEIGHT_STEP is the largest factor of one adaptation while psi has been on one side of the
+ * maximum only. A maximum out of reach is given up if psi falls by less than OUT_OF_REACH in such a step. */
+#define ROOM_LEFT 1e-6
+#define OTHERS_ZERO 1e-10 /* a part of the merit of the others at the start that counts as zero */
+#define WEIGHT_STEP 10
+#define ROUNDING_STEP 1e3 /* factor of a weight with which the merit is rounding */
+#define WEIGHTS_MAX 20
+#define OUT_OF_REACH 1e-3
+#define NOISE_MOST 1e-3  /* a weight is too large if rounding may change the merit by this part of the others */
+#define ROOM_INSIDE 1e-7 /* the part of the maximum below it at which psi is sought */
+/* The first weight is that of no smaller part of the largest coordinate, because rounding of positions would hide the
+ * merit, or in J'J of dense steps the curvature of the other objectives. */
+#define LEAST_ROOM 1e-11
+#define LEAST_ROOM_DENSE 1e-6
+#define BEND_WORTH 0.5 /* a correction is the last one if it leaves more than this part of the merit [0.5 to 0.9] */
 /* The same for steps by the saddle-point system, whose corrections need no derivatives. Such a step may also break
  * limits before it is corrected. A correction that gains less than the part SPARSE_WORTH of the promise is the last
  * one, and so is one that multiplies the merit by SPARSE_DIVERGES. */
@@ -134,20 +149,20 @@ static double largest_coordinate(const hf_model *m)
     return hf_max_magnitude(3 * (size_t)m->n_node, m->position_m);
 }
 
-/* Returns true if there is no requirement but a maximum of psi that leaves no room, and psi is no objective. */
-static bool needs_no_room(const hf_evaluator *v)
+/* Returns true if an objective can replace a maximum of psi. */
+static bool has_replaceable_psi(const hf_objectives *g)
 {
-    const hf_objectives *g = v->objectives;
-    if (!g || !g->constraints) return true;
-    for (int k = 0; k < g->n_objective; k++)
-        if (g->objective[k].settings.figure == HF_FIGURE_PSI) return false;
-    return g->n_objective < HF_DESIGN_ROWS_MAX && g->constraints->psi_most_m > 0 &&
-           g->constraints->psi_most_m < NO_ROOM * largest_coordinate(v->model);
+    return g && g->constraints && g->constraints->psi_most_m > 0 && g->n_objective < HF_DESIGN_ROWS_MAX;
 }
 
 bool hf_refine_is_sparse(const hf_evaluator *v)
 {
-    return hf_saddle_step_applies(v) && needs_no_room(v) && count_dense(v) > DENSE_UP_TO * count_saddle(v);
+    const hf_constraints *c = v->objectives ? v->objectives->constraints : NULL;
+    bool has_others = false; /* constraints that are not in the model of the saddle-point system */
+    for (int k = 0; c && k < c->n; k++)
+        if (k != c->psi || !has_replaceable_psi(v->objectives))
+            has_others |= !c->limit || !c->limit[k] || c->limit[k]->kind != HF_LIMIT_TENSION;
+    return hf_saddle_step_applies(v) && !has_others && count_dense(v) > DENSE_UP_TO * count_saddle(v);
 }
 
 /* Returns the operations of one step. *evaluation_of_ga receives those of one evaluation of the genetic algorithm. */
@@ -381,12 +396,12 @@ static hf_status tell_watcher(hf_refine_problem *p, const hf_refine_result *r, i
     const hf_refine_watcher *watcher = p->watcher;
     if (!watcher || !watcher->after) return HF_OK;
     if (!p->front) hf_refine_pack(p, r);
-    double beyond = p->psi_weight > 0 ? p->best_psi_m / p->psi_most_m - 1 : 0;
+    double beyond = p->relaxed ? p->best_psi_m / p->psi_most_m - 1 : 0;
     const hf_refine_progress now = {.iterations = r->iterations,
                                     .max_iterations = max_iterations,
                                     .evaluations = p->evaluations,
                                     .is_last = r->stop != HF_REFINE_MAX_ITERATIONS || r->iterations == max_iterations,
-                                    .merit = p->psi_weight > 0 ? p->best_of_others : r->merit,
+                                    .merit = p->relaxed ? p->best_of_others : r->merit,
                                     .psi_m = p->best_psi_m,
                                     .violation = p->is_outside ? p->violation : fmax(0, beyond),
                                     .n_state = p->front ? 0 : p->n_state,
@@ -592,6 +607,13 @@ static double predict(hf_refine_problem *p, double merit)
     return status == HF_OK ? part_of(fmax(0, gain), merit) : (double)NAN;
 }
 
+/* Returns true if the model, nearly without damping, promises more than rounding, although a step promises nothing. Such
+ * a run has not converged. */
+static bool is_hidden(hf_refine_problem *p, double merit)
+{
+    return !p->front && predict(p, merit) > fmax(UNDAMPED_CONVERGED, part_of(p->noise * p->noise / 2, merit));
+}
+
 /* Counts a step: settled_steps becomes the number of steps since one promised more than SETTLED_GAIN of the merit,
  * since the run last converged fast, or since the merit or an objective last changed noticeably. */
 static void count_settled(hf_refine_problem *p, double merit, double promised_part, bool is_kept)
@@ -619,6 +641,47 @@ static bool is_settled(hf_refine_problem *p, double merit, bool is_kept)
     return p->settled_steps >= 2 * SETTLED_STEPS || (is_kept && predict(p, merit) < SETTLED_GAIN);
 }
 
+/* Returns the next weight of the objective that replaces a maximum of psi, or 0 if the last one is final. */
+static double next_weight(hf_refine_problem *p)
+{
+    double most = p->psi_most_m, weight = p->psi_weight, ratio = p->psi_m / most, before = p->psi_low_m;
+    bool is_exact = p->noise < NOISE_MOST * p->others;
+    if (p->psi_m <= most) {
+        if (p->others <= p->zero) return 0;
+        if (is_exact && weight * weight * p->psi_m * (most - p->psi_m) < ROOM_LEFT * p->others * p->others) return 0;
+        p->weight_high = weight;
+        p->psi_high_m = p->psi_m;
+    } else {
+        if (is_exact && p->weight_low > 0 && p->weight_high == 0 && p->psi_m > (1 - OUT_OF_REACH) * before) return 0;
+        p->weight_low = weight;
+        p->psi_low_m = p->psi_m;
+    }
+    if (++p->n_weight > WEIGHTS_MAX) return 0;
+    if (p->weight_high == 0) return weight * (is_exact ? fmax(2, fmin(ratio * ratio, WEIGHT_STEP)) : ROUNDING_STEP);
+    if (p->weight_low == 0) return weight * fmin(sqrt(ratio), 0.5); /* psi grows by at most the square of that */
+    double part = log((1 - ROOM_INSIDE) * most / p->psi_low_m) / log(p->psi_high_m / p->psi_low_m);
+    return p->weight_low * pow(p->weight_high / p->weight_low, fmax(0.1, fmin(part, 0.9)));
+}
+
+/* Continues a run that has ended with the next weight, unless the last one is final. Returns HF_OK or the status of the
+ * failure. */
+static hf_status reweigh(hf_refine_problem *p, hf_refine_result *r)
+{
+    double weight = next_weight(p);
+    if (weight == 0) return HF_OK;
+    hf_refine_weigh(p, weight);
+    p->damping = p->is_sparse ? SPARSE_DAMPING_FIRST : DAMPING_FIRST;
+    p->growth = 2;
+    p->settled_steps = 0;
+    p->settled_merit = INFINITY;
+    p->promised_before = p->largest_scale = 0;
+    memset(p->scale, 0, (size_t)p->n * sizeof(double));
+    r->stop = HF_REFINE_MAX_ITERATIONS;
+    HF_TRY(hf_refine_evaluate(p, p->at));
+    r->merit = hf_refine_merit(p, &p->result);
+    return hf_refine_linearise(p);
+}
+
 /* Takes steps until the run has converged, settled or stalled, or until max_iterations is reached. A point of a front
  * needs accurate multipliers, so its steps must promise far less, and it never settles. The damping follows Nielsen
  * (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). Returns HF_OK, HF_NO_MEMORY,
@@ -627,7 +690,12 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
 {
     double gain = 0, converged = p->front ? FRONT_CONVERGED : GAIN_CONVERGED;
     hf_status status = hf_refine_evaluate(p, p->at);
-    p->best_of_others = hf_refine_others(p, &p->result);
+    p->psi_m = p->result.psi_m;
+    p->others = hf_refine_others(p, &p->result);
+    if (p->relaxed && r->iterations == 0) {
+        p->best_psi_m = p->psi_m;
+        p->best_of_others = p->others;
+    }
     if (status == HF_OK && !is_zero(p, r) && !is_scaled_first(p, max_iterations, r)) status = hf_refine_linearise(p);
     if (status == HF_OK && p->front) {
         r->merit = hf_refine_merit(p, &p->result);
@@ -657,9 +725,13 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
          * solve. */
         double promise = p->front ? p->promise : gain;
         bool promises = promise > converged * before && 2 * promise > p->noise * p->noise;
-        if ((status == HF_OK || status == HF_RATIO_CAP) && !promises) r->stop = HF_REFINE_CONVERGED;
+        bool is_last = (status == HF_OK || status == HF_RATIO_CAP) && !promises, is_kept = after < before;
+        if (is_last) r->stop = HF_REFINE_CONVERGED;
+        if (is_last && is_hidden(p, r->merit)) {
+            r->stop = is_kept ? HF_REFINE_MAX_ITERATIONS : HF_REFINE_STALLED;
+            p->damping *= DAMPING_TOO_MUCH;
+        }
         status = HF_OK;
-        bool is_kept = after < before;
         count_settled(p, is_kept ? merit : r->merit, part_of(promise, r->merit), is_kept);
         if (is_kept) {
             hf_refine_keep(p);
@@ -678,6 +750,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
         }
         if (status == HF_OK && r->stop == HF_REFINE_MAX_ITERATIONS && is_settled(p, r->merit, is_kept))
             r->stop = HF_REFINE_SETTLED;
+        if (status == HF_OK && p->relaxed && r->stop != HF_REFINE_MAX_ITERATIONS) status = reweigh(p, r);
         if (status == HF_OK) HF_TRY(tell_watcher(p, r, max_iterations));
     }
     if (status == HF_OK && !p->front && !p->is_outside)
@@ -707,8 +780,8 @@ static void count_limits(const hf_refine_problem *p, const double *design, hf_re
  * psi, a start that keeps the maximum is worse only than ends that keep it, too, by the other objectives. */
 static bool is_not_worse(const hf_refine_problem *p, const hf_form_result *end, const hf_form_result *start)
 {
-    if (!(p->psi_weight > 0) || start->psi_m > p->psi_most_m)
-        return hf_refine_merit(p, end) <= hf_refine_merit(p, start);
+    if (!p->relaxed) return hf_refine_merit(p, end) <= hf_refine_merit(p, start);
+    if (start->psi_m > p->psi_most_m) return end->psi_m <= start->psi_m;
     return end->psi_m <= p->psi_most_m && hf_refine_others(p, end) <= hf_refine_others(p, start);
 }
 
@@ -739,7 +812,7 @@ static hf_status hand_over(const hf_refine_problem *p, const hf_form_result *sta
  * after the cap, outside the limits, or stalled. There must be memory for them, except that the cap needs them. */
 static bool lacks_steps(hf_refine_problem *p, hf_refine_result *r)
 {
-    bool is_stuck = p->is_outside || (r->stop == HF_REFINE_STALLED && !(p->psi_weight > 0));
+    bool is_stuck = p->is_outside || (r->stop == HF_REFINE_STALLED && p->damping > DAMPING_MOST && !p->relaxed);
     p->needs_dense |= p->is_sparse && p->n <= DENSE_MOST && is_stuck && r->iterations > 0;
     if (!p->needs_dense) return false;
     r->stop = HF_REFINE_MAX_ITERATIONS;
@@ -786,14 +859,22 @@ static hf_status run_once(hf_refine_problem *p, int max_iterations, double *desi
 
 /* ---- a maximum of psi ---- */
 
-/* The caller's evaluator in which an objective replaces the maximum of psi. Its weight is E / maximum, where E is the
- * merit of the other objectives at the start. Then all designs whose merit is at most E keep the maximum. */
+/* The caller's evaluator in which an objective replaces the maximum of psi. Its first weight is E / maximum, where E is
+ * the merit of the other objectives at the start. Then all designs whose merit is at most E keep the maximum. */
 typedef struct {
     hf_evaluator v;
     hf_objectives objectives;
-    double weight;      /* 0: nothing is replaced */
+    double merit;       /* E; 0: nothing is replaced */
     double start_merit; /* of the caller's evaluator; NaN if the start is infeasible */
 } relaxation;
+
+/* Sets the first weight of a problem that is relaxed. */
+static void weigh_first(const relaxation *by, hf_refine_problem *p)
+{
+    double least = (p->is_sparse ? LEAST_ROOM : LEAST_ROOM_DENSE) * largest_coordinate(p->v.model);
+    p->zero = OTHERS_ZERO * by->merit;
+    if (p->relaxed) hf_refine_weigh(p, by->merit / fmax(p->psi_most_m, least));
+}
 
 /* Evaluates a design with its objectives, of which it makes and frees the scratch. */
 static hf_status evaluate_alone(const hf_evaluator *v, const double *design, hf_workspace *w, hf_form_result *r)
@@ -816,12 +897,12 @@ static hf_status relax(const hf_evaluator *of, const double *design, hf_workspac
     to->v = *of;
     to->v.objectives = g;
     *g = *of->objectives;
-    g->constraints = NULL;
-    double room_m = fmax(of->objectives->constraints->psi_most_m, LEAST_ROOM * largest_coordinate(of->model));
+    g->replaces_psi = true;
+    if (g->constraints->n == 1) g->constraints = NULL;
     double merit = hf_status_has_shape(start.status) ? hf_refine_norm(g, g->n_objective, &start) : 0;
-    to->weight = isfinite(merit) ? merit / room_m : 0;
+    to->merit = isfinite(merit) ? merit : 0;
     g->objective[g->n_objective++] =
-        (hf_objective){.settings = {.figure = HF_FIGURE_PSI, .target = NAN, .weight = to->weight, .mass_kg_per_m = NAN},
+        (hf_objective){.settings = {.figure = HF_FIGURE_PSI, .target = NAN, .weight = 1, .mass_kg_per_m = NAN},
                        .n_shape_row = n_row,
                        .first_row = g->n_row,
                        .n_row = n_row};
@@ -838,11 +919,14 @@ static hf_status tighten(const hf_evaluator *of, const relaxation *by, const dou
     HF_TRY(evaluate_alone(of, design, w, &end));
     r->start_merit = by->start_merit;
     r->merit = end.merit;
-    if (r->stop == HF_REFINE_STALLED) return HF_OK;
+    if (r->stop == HF_REFINE_STALLED || r->stop == HF_REFINE_MAX_ITERATIONS) return HF_OK;
     /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
-    double fall = by->weight * by->weight * end.psi_m / end.merit;
-    double part = fall * of->objectives->constraints->psi_most_m / end.merit;
+    double weight = by->objectives.objective[by->objectives.n_objective - 1].settings.weight;
+    double room_m = of->objectives->constraints->psi_most_m - end.psi_m;
+    double fall = weight * weight * end.psi_m / end.merit;
+    double part = end.merit > OTHERS_ZERO * by->merit ? fall * room_m / end.merit : 0;
     r->predicted_gain = fmax(r->predicted_gain, fmin(1, part));
+    if (part > SETTLED_GAIN) r->stop = HF_REFINE_STALLED;
     return HF_OK;
 }
 
@@ -863,38 +947,36 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
                            .growth = 2,
                            .way = 1,
                            .settled_merit = INFINITY};
+    relaxation relaxed = {.merit = 0};
+    if (!front && has_replaceable_psi(evaluator->objectives)) HF_TRY(relax(evaluator, design, w, &relaxed));
+    if (relaxed.merit > 0) {
+        p.v = relaxed.v;
+        p.caller = &relaxed.v;
+        p.relaxed = &relaxed.objectives;
+        p.psi_most_m = evaluator->objectives->constraints->psi_most_m;
+    }
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
     hf_refine_problem sparse = p; /* comes first where it is faster */
-    relaxation relaxed = {.weight = 0};
-    bool has_maximum = evaluator->objectives && evaluator->objectives->constraints;
     sparse.is_sparse =
         !front && hf_refine_is_sparse(evaluator) && !(watcher && hf_refine_was_dense(watcher->n_state, watcher->state));
     sparse.damping = SPARSE_DAMPING_FIRST;
     hf_refine_watcher from_there = watcher ? *watcher : (hf_refine_watcher){0};
-    hf_status status = HF_OK;
-    if (sparse.is_sparse && has_maximum) {
-        status = relax(evaluator, design, w, &relaxed);
-        sparse.is_sparse = status == HF_OK && relaxed.weight > 0;
-        sparse.v.objectives = relaxed.v.objectives;
-        sparse.caller = &relaxed.v;
-        sparse.psi_weight = relaxed.weight;
-        sparse.psi_most_m = evaluator->objectives->constraints->psi_most_m;
-    }
-    if (sparse.is_sparse) status = run_once(&sparse, max_iterations, design, result);
-    if (sparse.is_sparse && has_maximum && !sparse.needs_dense && status == HF_OK)
-        status = tighten(evaluator, &relaxed, design, w, result);
-    if (sparse.needs_dense) { /* from its best design on, or for a maximum of psi from the start */
-        if (!has_maximum) hf_refine_pack(&sparse, result);
-        from_there.state = has_maximum ? NULL : sparse.state;
-        from_there.n_state = has_maximum ? 0 : sparse.n_state;
+    weigh_first(&relaxed, sparse.is_sparse ? &sparse : &p);
+    hf_status status = sparse.is_sparse ? run_once(&sparse, max_iterations, design, result) : HF_OK;
+    if (sparse.needs_dense) { /* from its best design on */
+        hf_refine_pack(&sparse, result);
+        from_there.state = sparse.state;
+        from_there.n_state = sparse.n_state;
         p.watcher = &from_there;
+        weigh_first(&relaxed, &p); /* its state sets another one */
     }
     if (status == HF_OK && (!sparse.is_sparse || sparse.needs_dense)) {
         status = run_once(&p, max_iterations, design, result);
         hf_refine_destroy(&p);
     }
     hf_refine_destroy(&sparse);
+    if (status == HF_OK && relaxed.merit > 0) status = tighten(evaluator, &relaxed, design, w, result);
     return status;
 }

@@ -39,7 +39,14 @@
     X(VIOLATION, p->violation, double)                                                                                 \
     X(PROMISED_BEFORE, p->promised_before, double)                                                                     \
     X(SETTLED_STEPS, p->settled_steps, int)                                                                            \
-    X(SETTLED_MERIT, p->settled_merit, double)
+    X(SETTLED_MERIT, p->settled_merit, double)                                                                         \
+    X(BEST_OF_OTHERS, p->best_of_others, double)                                                                       \
+    X(PSI_WEIGHT, p->psi_weight, double)                                                                               \
+    X(WEIGHT_LOW, p->weight_low, double)                                                                               \
+    X(PSI_LOW, p->psi_low_m, double)                                                                                   \
+    X(WEIGHT_HIGH, p->weight_high, double)                                                                             \
+    X(PSI_HIGH, p->psi_high_m, double)                                                                                 \
+    X(N_WEIGHT, p->n_weight, int)
 #define INDEX(name, ...) STATE_##name,
 #define WRITE(name, variable, ...) s[STATE_##name] = variable;
 #define READ(name, variable, type) variable = (type)s[STATE_##name];
@@ -48,7 +55,7 @@ enum {
     STATE_SCALARS(INDEX) STATE_SETTLED_OBJECTIVE,
     N_SCALAR = STATE_SETTLED_OBJECTIVE + HF_DESIGN_ROWS_MAX
 };
-#define FORMAT 4
+#define FORMAT 5
 
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
 {
@@ -188,12 +195,24 @@ double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_resu
     return sqrt(square);
 }
 
+void hf_refine_weigh(hf_refine_problem *p, double weight)
+{
+    p->psi_weight = weight;
+    p->relaxed->objective[p->relaxed->n_objective - 1].settings.weight = weight;
+}
+
 void hf_refine_keep(hf_refine_problem *p)
 {
     const hf_model *m = p->v.model;
     memcpy(p->at, p->trial, (size_t)p->n * sizeof(double));
-    p->best_psi_m = p->result.psi_m;
-    p->best_of_others = hf_refine_others(p, &p->result);
+    p->psi_m = p->result.psi_m;
+    p->others = hf_refine_others(p, &p->result);
+    if (p->relaxed && !p->is_outside &&
+        (p->best_psi_m <= p->psi_most_m ? p->psi_m > p->psi_most_m || p->others > p->best_of_others
+                                        : p->psi_m > p->best_psi_m))
+        return;
+    p->best_psi_m = p->psi_m;
+    p->best_of_others = p->others;
     for (int k = 0; k < m->n_variable; k++)
         p->best[k] = hf_refine_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
 }
@@ -322,7 +341,8 @@ static bool is_state(const hf_refine_problem *p, size_t n_state, const double *s
     return s[STATE_ITERATIONS] >= 0 && s[STATE_ITERATIONS] < INT_MAX && s[STATE_EVALUATIONS] >= 1 &&
            s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_REFINE_SETTLED &&
            s[STATE_DAMPING] > 0 && s[STATE_GROWTH] > 0 && s[STATE_WAY] > 0 && s[STATE_SETTLED_STEPS] >= 0 &&
-           s[STATE_SETTLED_STEPS] < INT_MAX;
+           s[STATE_SETTLED_STEPS] < INT_MAX && s[STATE_N_WEIGHT] >= 0 && s[STATE_N_WEIGHT] < INT_MAX &&
+           (!p->relaxed || s[STATE_PSI_WEIGHT] > 0);
 }
 
 bool hf_refine_was_dense(size_t n_state, const double *s)
@@ -348,5 +368,6 @@ bool hf_refine_resume(hf_refine_problem *p, size_t n_state, const double *s, hf_
         p->step.side[i] = (int)fmax(-2, fmin(2, array[2 * n + i]));
     }
     memcpy(p->best, array + 3 * n, (size_t)p->v.model->n_variable * sizeof(double));
+    if (p->relaxed) hf_refine_weigh(p, p->psi_weight);
     return true;
 }

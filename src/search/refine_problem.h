@@ -48,11 +48,18 @@ typedef struct {
     hf_sensitivity slopes;
     hf_residuals residuals;
     hf_watch watch;
-    hf_quadratic step;                /* for steps by the saddle-point system only x, side and n */
-    bool is_sparse;                   /* true: steps by `saddle`, without derivatives by each variable */
-    hf_saddle_step saddle;            /* used if is_sparse */
-    bool needs_dense;                 /* dense steps must continue: the cap is broken, or `saddle` leads no farther */
-    double psi_weight, psi_most_m;    /* the last objective replaces a maximum of psi; 0: no */
+    hf_quadratic step;     /* for steps by the saddle-point system only x, side and n */
+    bool is_sparse;        /* true: steps by `saddle`, without derivatives by each variable */
+    hf_saddle_step saddle; /* used if is_sparse */
+    bool needs_dense;      /* dense steps must continue: the cap is broken, or `saddle` leads no farther */
+    /* The objectives, whose last one replaces a maximum of psi, and this maximum. NULL: none does. Its weight is found
+     * by refinements: one below which psi exceeds the maximum and one above which it does not, and psi with each. A
+     * weight of 0 is not known. */
+    hf_objectives *relaxed;
+    double psi_most_m, psi_weight, weight_low, psi_low_m, weight_high, psi_high_m;
+    int n_weight;
+    double zero;                      /* hf_refine_others below which nothing is left to gain */
+    double psi_m, others;             /* psi and hf_refine_others of the design at `at` */
     double best_of_others;            /* hf_refine_others of the best design */
     const hf_watch_front *front;      /* the objective to minimise and the limits on the others, or NULL */
     const hf_refine_watcher *watcher; /* NULL: no watcher */
@@ -114,10 +121,14 @@ double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_resu
 static inline double hf_refine_others(const hf_refine_problem *problem, const hf_form_result *result)
 {
     const hf_objectives *objectives = problem->v.objectives;
-    return problem->psi_weight > 0 ? hf_refine_norm(objectives, objectives->n_objective - 1, result) : 0;
+    return problem->relaxed ? hf_refine_norm(objectives, objectives->n_objective - 1, result) : 0;
 }
 
-/* Makes `trial`, whose shape is in the workspace, the best design. */
+/* Sets the weight of the objective that replaces a maximum of psi. The merit of a result found before is another one. */
+void hf_refine_weigh(hf_refine_problem *problem, double weight);
+
+/* Moves to `trial`, whose shape is in the workspace. It becomes the best design, unless a maximum of psi is replaced and
+ * an earlier design within it is better by the other objectives, or nearer to it. */
 void hf_refine_keep(hf_refine_problem *problem);
 
 /* Computes the residuals, J', J'J, the gradient, and the limits with their rates at the shape in the workspace. Returns

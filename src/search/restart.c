@@ -9,6 +9,8 @@
 /* With three restarts, each of 20 seeds reaches the best optimum of net C, whose optima differ in a few variables. */
 #define FAILURES 2        /* starts at other bounds that may fail before another individual is tried */
 #define SAME_SHAPE 1e-6   /* largest difference of positions within one optimum, relative to the size of the net */
+#define SAME_MERIT 1e-4   /* the same for the merit if a run has settled, because it has not converged to a shape */
+#define ZERO 1e-10        /* merits below this part of the first one are rounding: such optima count as one */
 #define BETTER_RATIO 1e-9 /* part of the merit by which a better optimum is better */
 #define AT_ONCE 64        /* starts that the threads rank together */
 #define RANKED_MIN 64     /* even if so many cost more than RANKING */
@@ -29,7 +31,9 @@ typedef struct {
     hf_form_result *outcome; /* [AT_ONCE] ... and their results */
     int *variable;           /* [n_variable] variables at a bound; the first ones are ranked */
     double *flipped;         /* [n_variable] rank of the start at the other bound of this variable; INFINITY: none */
-    double *best;            /* [n_variable] design of the best optimum */
+    double *best;            /* [n_variable] the best design, or one outside the limits if none is feasible */
+    double best_merit;       /* INFINITY if none is feasible */
+    double zero;             /* merit that is rounding */
     double size_m;
     int ranked_max; /* maximum number of starts that one ranking evaluates */
     int n_ranked;   /* starts evaluated so far for rankings */
@@ -44,15 +48,19 @@ static double distance_m(const restart *q, const double *a)
     return most;
 }
 
-/* Counts the optimum whose shape is in the workspace. A new one is inserted by its merit. */
-static void count(restart *q, double merit)
+/* Counts the optimum whose shape is in the workspace, unless its run has stalled. A new one is inserted by its merit. */
+static void count(restart *q, double merit, hf_refine_stop stop)
 {
     hf_optima *o = q->optimum;
     size_t n = 3 * (size_t)q->v->model->n_node;
     int at = o->n;
+    if (stop != HF_REFINE_CONVERGED && stop != HF_REFINE_SETTLED) return;
     for (int i = 0; i < o->n; i++) {
-        if (distance_m(q, q->shape_m + (size_t)i * n) > SAME_SHAPE * q->size_m) continue;
+        double by = fabs(merit - o->merit[i]);
+        bool is_same = by <= q->zero || (stop == HF_REFINE_SETTLED && by <= SAME_MERIT * merit);
+        if (!is_same && distance_m(q, q->shape_m + (size_t)i * n) > SAME_SHAPE * q->size_m) continue;
         o->count[i]++;
+        if (merit == q->best_merit) o->merit[i] = merit;
         return;
     }
     for (; at > 0 && merit < o->merit[at - 1]; at--) {
@@ -188,8 +196,9 @@ static hf_status refine(restart *q, int max_iterations, const hf_refine_watcher 
     if (status != HF_OK || to.stop == HF_REFINE_MAX_ITERATIONS) return HF_OK;
     hf_evaluate(q->v, q->start, q->w, q->point, &r);
     if (r.status != HF_OK) return HF_OK;
-    *is_better = r.merit < q->optimum->merit[0] * (1 - BETTER_RATIO);
-    count(q, r.merit);
+    *is_better = !(r.merit >= q->best_merit * (1 - BETTER_RATIO) - q->zero);
+    if (*is_better) q->best_merit = r.merit;
+    count(q, r.merit, to.stop);
     if (!*is_better) return HF_OK;
     to.evaluations = result->evaluations;
     *result = to;
@@ -203,7 +212,9 @@ static hf_status refine_all(restart *q, int max_iterations, const hf_refine_watc
     bool is_better = true;
     for (int i = 0, n_failed = 0; i < HF_RESTARTS; i++, n_failed += !is_better) {
         if (is_better) rank_flips(q);
-        bool is_last = n_failed >= FAILURES || !next_flip(q, q->start);
+        bool is_initial = i == 0 && isinf(q->best_merit);
+        bool is_last = !is_initial && (n_failed >= FAILURES || !next_flip(q, q->start));
+        if (is_initial) memcpy(q->start, q->bounds->initial, (size_t)q->bounds->n_variable * sizeof *q->start);
         if (is_last && !next_individual(q, q->start)) return HF_OK;
         HF_TRY(refine(q, max_iterations, watcher, result, &is_better));
         if (is_last) return HF_OK;
@@ -225,10 +236,13 @@ hf_status hf_restart_run(hf_batch *batch, const hf_population *p, int max_iterat
     if (status == HF_OK) status = create(&q);
     if (status == HF_OK) {
         memcpy(q.best, design, (size_t)p->n_variable * sizeof *design);
-        count(&q, r.merit);
+        q.best_merit = r.status == HF_OK ? r.merit : (double)INFINITY;
+        if (isfinite(result->start_merit)) q.zero = ZERO * result->start_merit;
+        if (r.status == HF_OK) count(&q, r.merit, result->stop);
         status = refine_all(&q, max_iterations, watcher, result);
         result->evaluations += q.n_ranked;
         if (status == HF_OK) memcpy(design, q.best, (size_t)p->n_variable * sizeof *design);
+        if (status == HF_OK && isinf(q.best_merit)) status = r.status;
     }
     hf_objectives_point_free(&point);
     hf_arena_free_block(q.block);

@@ -108,6 +108,11 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     const hf_constraints *constraints = v->objectives ? v->objectives->constraints : NULL;
     for (int k = 0; constraints && k < constraints->n; k++) {
         hf_watched item = no_item;
+        if (v->objectives->replaces_psi && k == constraints->psi) continue;
+        if (constraints->limit && constraints->limit[k]) {
+            add_row(v, constraints->limit[k], q);
+            continue;
+        }
         item.constraint = k;
         item.kind = HF_WATCH_ROW;
         item.upper = 0;
@@ -188,15 +193,17 @@ bool hf_watch_keeps(hf_watch *q, const hf_workspace *w)
 
 double hf_watch_violation(hf_watch *q, const hf_workspace *w)
 {
+    const hf_objectives *g = q->v->objectives;
     double sum = hf_limits_violation(q->v, w);
     look(q, w);
+    for (int k = 0; q->constraint && k < g->constraints->n; k++)
+        if (!(g->replaces_psi && k == g->constraints->psi)) sum += fmax(0, q->constraint[k]) / g->constraints->unit[k];
     for (int k = q->n_cap_of_limits; k < q->n_cap; k++)
         if (isfinite(q->cap[k])) sum += fmax(0, ratio_of(q, k) / q->cap[k] - 1);
     for (int i = 0; i < q->n; i++) {
         const hf_watched *t = &q->item[i];
         if (t->kind == HF_WATCH_BOUND)
             sum += hf_limits_tension_violation(q->v->model, w->tension_N[t->cable], t->lower, t->upper);
-        if (t->constraint >= 0) sum += fmax(0, t->now) / q->v->objectives->constraints->unit[t->constraint];
         if (t->kind == HF_WATCH_OBJECTIVE) sum += fmax(0, t->now - t->upper) / t->unit;
     }
     return sum;

@@ -18,8 +18,9 @@
 
 /* ---- from the rows ---- */
 
-static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_limit_settings *s, int row, hf_limit *to,
-                          hf_messages *messages)
+/* Reads a row. `cable` receives its cables. */
+static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_limit_settings *s, int row, int *cable,
+                          hf_limit *to, hf_messages *messages)
 {
     char where[HF_LOCATION_SIZE];
     to->kind = s->figure;
@@ -33,7 +34,8 @@ static hf_status read_row(const hf_scene *scene, const hf_model *m, const hf_lim
             hf_messages_location(messages, where, "optimize.limits.%d.figure", row));
     }
     hf_messages_location(messages, where, "optimize.limits.%d.set", row);
-    to->n_cable = hf_cable_pick_some(scene, s->set, where, to->cable, messages);
+    to->cable = cable;
+    to->n_cable = hf_cable_pick_some(scene, s->set, where, cable, messages);
     return to->n_cable ? HF_OK : HF_BAD_CASE;
 }
 
@@ -49,8 +51,8 @@ hf_status hf_limits_create(const hf_scene *scene, const hf_model *m, const hf_op
     l->n = s->n_limit;
     hf_status status = HF_OK;
     for (int i = 0; i < l->n; i++) { /* reports all faults */
-        l->row[i].cable = cable + (size_t)i * (size_t)m->n_cable;
-        if (read_row(scene, m, &s->limit[i], i, &l->row[i], messages) != HF_OK) status = HF_BAD_CASE;
+        int *of_row = cable + (size_t)i * (size_t)m->n_cable;
+        if (read_row(scene, m, &s->limit[i], i, of_row, &l->row[i], messages) != HF_OK) status = HF_BAD_CASE;
     }
     return status;
 }

@@ -180,7 +180,7 @@ START_TEST(evenness_falls_under_a_maximum_of_psi)
                   "form: {pretension_N: 10, prestress: exact, residual_tolerance: 1e-12}\n"
                   "coupling: {tof_m: 1e-12}\n"
                   "truss: {ring: {cells_per_bay: 1, held: bay, longeron: {diameter_m: 0.03, wall_m: 0.001}}}\n"
-                  "optimize:\n  method: lm\n  refine_steps: 40\n"
+                  "optimize:\n  method: lm\n  refine_steps: 80\n"
                   "  variables: [{set: all, vary: force_density, range: 10 %}]\n"
                   "  objective: [{figure: evenness, set: front}]\n"
                   "  limits: [{figure: tension, set: all, bounds: [1.5, 40]}]\n"
@@ -188,13 +188,13 @@ START_TEST(evenness_falls_under_a_maximum_of_psi)
     const char *out = temp("r.h5"), *other = temp("o.h5");
     HIFDM(0, "run", c, "-o", out);
     OUT("verdict: pass");
-    EXPECT(out, "--", "a['form'].attrs['psi_m'] > 1e-3", "a['refine'].attrs['psi_m'] < 1e-12",
-           "a['refine'].attrs['merit'] < 0.00591 < 0.017 < a['form'].attrs['merit']",
+    EXPECT(out, "--", "a['form'].attrs['psi_m'] > 1e-3", "a['refine'].attrs['psi_m'] <= 1e-9",
+           "a['refine'].attrs['merit'] < 0.0059055 < 0.017 < a['form'].attrs['merit']",
            "a['refine'].attrs['algorithm_stop'] in (0, 3)", "a['refine/tension_N'][:].min() >= 1.5 * (1 - 1e-8)");
     HIFDM(0, "run", c, "-o", other, "--quiet", "--threads", "2");
     HIFDM(0, "diff", out, other);
     HIFDM(0, "run", c, "-o", other, "--force", "--progress", "jsonl");
-    ERR("\"step\": 0, \"max_steps\": 40, \"evaluations\": 0, \"best_psi_m\": 0.00397");
+    ERR("\"step\": 0, \"max_steps\": 80, \"evaluations\": 0, \"best_psi_m\": 0.00397");
     ERR("\"merit\": 0.017348");
     ERR("\"violation\": 39788");
     ERR("\"merit\": 0.0059");
@@ -207,12 +207,12 @@ END_TEST
  * a tie of 5 cm, but form.collapse_ratio refuses ties below half of their length. */
 START_TEST(a_run_keeps_to_shapes_of_the_law_tension)
 {
-    const char *c = file_with(
-        "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}}\n"
-                  "form: {pretension_N: 10, prestress: exact, collapse_ratio: 0.5}\n"
-                  "optimize:\n  method: lm\n"
-                  "  variables: [{set: all, vary: tension, bounds: [0.1, 100]}]\n"
-                  "  objective: [{figure: length, set: tie, target: 0.05}]\n");
+    const char *c =
+        file_with("c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}}\n"
+                            "form: {pretension_N: 10, prestress: exact, collapse_ratio: 0.5}\n"
+                            "optimize:\n  method: lm\n"
+                            "  variables: [{set: all, vary: tension, bounds: [0.1, 100]}]\n"
+                            "  objective: [{figure: length, set: tie, target: 0.05}]\n");
     const char *out = temp("r.h5");
     HIFDM(0, "run", c, "-o", out);
     EXPECT(out, "--", "a['form'].attrs['merit'] > 0.8", "a['refine'].attrs['merit'] < 0.4",

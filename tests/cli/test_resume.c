@@ -310,7 +310,7 @@ END_TEST
     "scene:\n  paraboloid: {aperture_m: 12, focal_length_m: 6, rings: 14, rear_distance_m: 3.6}\n"                     \
     "form: {pretension_N: 10, prestress: exact}\n"                                                                     \
     "truss:\n  ring: {cells_per_bay: 1, held: bay, longeron: {diameter_m: 0.03, wall_m: 0.001}}\n"                     \
-    "optimize:\n  method: lm\n  refine_steps: 20\n"                                                                    \
+    "optimize:\n  method: lm\n  refine_steps: 7\n  boundary_ratio_cap: 1000\n"                                         \
     "  variables: [{set: all, vary: force_density, bounds: [0.1, null]}]\n"                                            \
     "  objective: [{figure: psi}, {figure: evenness, set: front, weight: 1e-5}]\n"
 

@@ -197,7 +197,12 @@ START_TEST(only_a_requirement_out_of_reach_is_named)
         bool has_no_rates, is_named;
     } of[] = {{5, false, true}, {50, false, false}, {5, true, false}, {0.02, false, false}};
     static const double unit = 1;
-    const hf_constraints c = {1, &unit, open_nothing, close_nothing, measure, linearise, 0};
+    const hf_constraints c = {.n = 1,
+                              .unit = &unit,
+                              .open = open_nothing,
+                              .close = close_nothing,
+                              .measure = measure,
+                              .linearise = linearise};
     hf_repair_doubt found;
     begin(HF_RULE_FORCE_DENSITY, 0.1);
     hf_population *now = &d.optimiser.population;
@@ -224,7 +229,12 @@ END_TEST
 START_TEST(children_come_within_requirements)
 {
     static const double unit = 1;
-    const hf_constraints c = {1, &unit, open_nothing, close_nothing, measure, linearise, 0};
+    const hf_constraints c = {.n = 1,
+                              .unit = &unit,
+                              .open = open_nothing,
+                              .close = close_nothing,
+                              .measure = measure,
+                              .linearise = linearise};
     begin(HF_RULE_FORCE_DENSITY, 0.8);
     hf_population *now = &d.optimiser.population, *next = &d.optimiser.next;
     hf_objectives objectives = {.model = &d.r.net.model, .constraints = &c};
