@@ -696,8 +696,7 @@ void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf
                what, what_to_widen(p));
 }
 
-/* Returns true if the shape in the workspace misses a maximum of psi, the only requirement, by less than the tolerance of
- * the coupling: another shape of the same design may meet it. */
+/* Returns true if the shape in the workspace misses a maximum of psi by less than the tolerance of the coupling: another shape of the same design may meet it. */
 static bool misses_by_tolerance(const hf_problem *p)
 {
     const hf_constraints *c = hf_problem_constraints_of(p);

@@ -69,8 +69,8 @@
 #define SETTLED_SLOW 0.25
 #define SETTLED_GAIN 1e-4
 #define SETTLED_OBJECTIVE 1e-3
-/* An objective replaces a maximum of psi. Its weight is adapted until the other objectives could gain less than ROOM_LEFT
- * of their merit by more psi. WEIGHT_STEP is the largest factor of one adaptation while psi has been on one side of the
+/* An objective replaces a maximum of psi. Its weight is adapted until the other objectives could gain less than
+ * ROOM_LEFT of their merit by more psi. WEIGHT_STEP is the largest factor of one adaptation while psi has been on one side of the
  * maximum only. A maximum out of reach is given up if psi falls by less than OUT_OF_REACH in such a step. */
 #define ROOM_LEFT 1e-6
 #define OTHERS_ZERO 1e-10 /* a part of the merit of the others at the start that counts as zero */
@@ -607,8 +607,8 @@ static double predict(hf_refine_problem *p, double merit)
     return status == HF_OK ? part_of(fmax(0, gain), merit) : (double)NAN;
 }
 
-/* Returns true if the model, nearly without damping, promises more than rounding, although a step promises nothing. Such
- * a run has not converged. */
+/* Returns true if the model, nearly without damping, promises more than rounding, although a step promises nothing.
+ * Such a run has not converged. */
 static bool is_hidden(hf_refine_problem *p, double merit)
 {
     return !p->front && predict(p, merit) > fmax(UNDAMPED_CONVERGED, part_of(p->noise * p->noise / 2, merit));
@@ -682,6 +682,31 @@ static hf_status reweigh(hf_refine_problem *p, hf_refine_result *r)
     return hf_refine_linearise(p);
 }
 
+/* Notes psi and the other objectives at the start of a run or of its resumption. */
+static void note_start(hf_refine_problem *p, const hf_refine_result *r)
+{
+    p->psi_m = p->result.psi_m;
+    p->others = hf_refine_others(p, &p->result);
+    if (!p->relaxed || r->iterations > 0) return;
+    p->best_psi_m = p->psi_m;
+    p->best_of_others = p->others;
+}
+
+/* Moves to the end of a step, which has gained this part of what it promised. Returns HF_OK or the status of the
+ * failure. */
+static hf_status accept(hf_refine_problem *p, double merit, double part, hf_refine_result *r)
+{
+    double share = 2 * part - 1;
+    hf_refine_keep(p);
+    r->merit = merit;
+    learn_pressure(p);
+    if (part > 0 && isfinite(part))
+        p->damping =
+            fmax(DAMPING_LEAST, p->damping * fmax(p->is_sparse ? SPARSE_FALL : 0.1, 1 - share * share * share));
+    p->growth = 2;
+    return r->stop == HF_REFINE_MAX_ITERATIONS ? hf_refine_linearise(p) : HF_OK;
+}
+
 /* Takes steps until the run has converged, settled or stalled, or until max_iterations is reached. A point of a front
  * needs accurate multipliers, so its steps must promise far less, and it never settles. The damping follows Nielsen
  * (Madsen, Nielsen, Tingleff, Methods for non-linear least squares problems, DTU 2004). Returns HF_OK, HF_NO_MEMORY,
@@ -690,12 +715,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
 {
     double gain = 0, converged = p->front ? FRONT_CONVERGED : GAIN_CONVERGED;
     hf_status status = hf_refine_evaluate(p, p->at);
-    p->psi_m = p->result.psi_m;
-    p->others = hf_refine_others(p, &p->result);
-    if (p->relaxed && r->iterations == 0) {
-        p->best_psi_m = p->psi_m;
-        p->best_of_others = p->others;
-    }
+    note_start(p, r);
     if (status == HF_OK && !is_zero(p, r) && !is_scaled_first(p, max_iterations, r)) status = hf_refine_linearise(p);
     if (status == HF_OK && p->front) {
         r->merit = hf_refine_merit(p, &p->result);
@@ -734,15 +754,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
         status = HF_OK;
         count_settled(p, is_kept ? merit : r->merit, part_of(promise, r->merit), is_kept);
         if (is_kept) {
-            hf_refine_keep(p);
-            r->merit = merit;
-            learn_pressure(p);
-            double share = 2 * (before - after) / gain - 1;
-            if (gain > 0)
-                p->damping =
-                    fmax(DAMPING_LEAST, p->damping * fmax(p->is_sparse ? SPARSE_FALL : 0.1, 1 - share * share * share));
-            p->growth = 2;
-            if (r->stop == HF_REFINE_MAX_ITERATIONS) status = hf_refine_linearise(p);
+            status = accept(p, merit, (before - after) / gain, r);
         } else {
             p->damping *= p->growth;
             p->growth *= 2;

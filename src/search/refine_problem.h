@@ -124,11 +124,11 @@ static inline double hf_refine_others(const hf_refine_problem *problem, const hf
     return problem->relaxed ? hf_refine_norm(objectives, objectives->n_objective - 1, result) : 0;
 }
 
-/* Sets the weight of the objective that replaces a maximum of psi. The merit of a result found before is another one. */
+/* Sets the weight of the objective that replaces a maximum of psi. Earlier results keep the merit of the old weight. */
 void hf_refine_weigh(hf_refine_problem *problem, double weight);
 
-/* Moves to `trial`, whose shape is in the workspace. It becomes the best design, unless a maximum of psi is replaced and
- * an earlier design within it is better by the other objectives, or nearer to it. */
+/* Moves to `trial`, whose shape is in the workspace. It becomes the best design, unless a maximum of psi is replaced
+ * and an earlier design within it is better by the other objectives, or nearer to it. */
 void hf_refine_keep(hf_refine_problem *problem);
 
 /* Computes the residuals, J', J'J, the gradient, and the limits with their rates at the shape in the workspace. Returns

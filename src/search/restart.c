@@ -48,7 +48,8 @@ static double distance_m(const restart *q, const double *a)
     return most;
 }
 
-/* Counts the optimum whose shape is in the workspace, unless its run has stalled. A new one is inserted by its merit. */
+/* Counts the optimum whose shape is in the workspace, unless its run has stalled. A new one is inserted by its
+ * merit. */
 static void count(restart *q, double merit, hf_refine_stop stop)
 {
     hf_optima *o = q->optimum;

@@ -12,12 +12,12 @@
 
 /* Refines `design` [n_variable], at which a refinement has ended with *result, again from other starts. `population`
  * has the bounds and, if it has individuals, the last generation of the search. `optimum` receives the distinct optima,
- * best first; two optima are distinct if their shapes are. A run that has stalled has no
- * optimum, and one that has settled no other than one of nearly the same merit. `design` and *result become those of the best optimum; their
+ * best first; two optima are distinct if their shapes are. A run that has stalled has no optimum, and one that has
+ * settled no other than one of nearly the same merit. `design` and *result become those of the best optimum; their
  * numbers of evaluations are those of all refinements. Each refinement takes at most max_iterations steps, and a design
  * that it had to leave for that reason is not an optimum. The threads of the batch rank the starts. `watcher` hears of
- * the steps, or is NULL; it has no state. If `design` breaks limits, the starts are nearer to them or far from it. Returns HF_OK, HF_NO_MEMORY, the status that
- * the watcher returned, or that of `design` if none is feasible. */
+ * the steps, or is NULL; it has no state. If `design` breaks limits, the first start is the initial design. Returns
+ * HF_OK, HF_NO_MEMORY, the status that the watcher returned, or that of `design` if none is feasible. */
 hf_status hf_restart_run(hf_batch *batch, const hf_population *population, int max_iterations,
                          const hf_refine_watcher *watcher, double *design, hf_workspace *workspace,
                          hf_refine_result *result, hf_optima *optimum);
