@@ -351,7 +351,7 @@ static hf_status check_replicates(const hf_study *s, hf_messages *messages)
                     "replicates, or %s",
                     s->path, replicate->line, replicate->column,
                     s->has_optimize ? "the method lm uses no random numbers" : "the case has no section optimize",
-                    s->has_optimize ? "use the method ga or ga+lm" : "add the section optimize");
+                    s->has_optimize ? "use the method ga, ga+lm or auto" : "add the section optimize");
 }
 
 hf_status hf_study_make_points(hf_study *s, hf_messages *messages)

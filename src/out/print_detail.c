@@ -94,7 +94,7 @@ void hf_print_optima(const hf_summary *s, FILE *f)
     fprintf(f, "                distinct optima:");
     for (int i = 0; i < o->n; i++) {
         fprintf(f, is_psi ? "%s psi %.4f mm" : "%s merit %.6g", i ? "," : "", o->merit[i] * (is_psi ? 1e3 : 1));
-        fprintf(f, " (%d of %d refinements)", o->count[i], n_refinement);
+        fprintf(f, " (%d of %d refinement%s)", o->count[i], n_refinement, n_refinement == 1 ? "" : "s");
     }
     fputc('\n', f);
 }

@@ -125,17 +125,21 @@ static void warn_of_steps(const steps *q, const hf_refine_result *r)
     const char *what = has_merit(q) ? "the merit" : "psi";
     char lately[96] = "", predicted[96] = "";
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
-    if (n > 0) snprintf(lately, sizeof lately, ": the last %d steps lowered %s by %.2g %%", n, what, 100 * gain);
+    if (n == 1)
+        snprintf(lately, sizeof lately, ": the last step lowered %s by %.2g %%", what, 100 * gain);
+    else if (n > 0)
+        snprintf(lately, sizeof lately, ": the last %d steps lowered %s by %.2g %%", n, what, 100 * gain);
     if (isfinite(r->predicted_gain))
         snprintf(predicted, sizeof predicted, "; the model predicts at most %.3g %% less", 100 * r->predicted_gain);
     if (r->predicted_gain > WORTH && gain > WORTH)
-        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps. Better designs are near%s%s. %s",
-                   r->iterations, lately, predicted,
+        hf_warning(q->messages,
+                   "Levenberg-Marquardt has not converged after %d step%s. Better designs are near%s%s. %s",
+                   r->iterations, r->iterations == 1 ? "" : "s", lately, predicted,
                    request->part.of_sweep || request->output.no_file ? "Raise optimize.refine_steps"
                                                                      : "Continue with the option --more N");
     else
-        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d steps%s%s", r->iterations, lately,
-                   predicted);
+        hf_warning(q->messages, "Levenberg-Marquardt has not converged after %d step%s%s%s", r->iterations,
+                   r->iterations == 1 ? "" : "s", lately, predicted);
 }
 
 /* Notes where the refinement has stopped, for the message of an interrupted run. */

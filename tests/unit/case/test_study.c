@@ -525,7 +525,7 @@ static const struct {
      "Remove the key replicates, or add the section optimize"},
     {"  optimize.method: [lm]\n  replicates: 3\n",
      "study.yaml:4:3: sweep.replicates: all replicates would be identical, because the method lm uses no random "
-     "numbers. Remove the key replicates, or use the method ga or ga+lm"},
+     "numbers. Remove the key replicates, or use the method ga, ga+lm or auto"},
     {"  replicates: 3\n  optimize.method: [ga, lm]\n", "study.yaml:3:3: sweep.replicates: all replicates would be"},
     {"  form.pretension_N: {from: 1, to: 2, n: 2000}\n  replicates: 501\n",
      "the study has 1002000 points, but the maximum is 1000000"},
