@@ -713,14 +713,14 @@ const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const d
     const char *wider = p->model.variable ? "Widen the ranges and bounds of optimize.variables, " : "";
     if (start.status == HF_OUT_OF_LIMITS && misses_by_tolerance(p))
         wider = "Lower coupling.tof_m and form.residual_tolerance, which bound the accuracy of psi, ";
-    char where[128] = "", factor[64] = "";
+    char factor[64] = "";
     double least, most;
     hf_variables_scales(&p->model, initial, design, &least, &most);
     if (!isnan(least)) snprintf(factor, sizeof factor, ", which scales variables by %.4g", least);
     if (most > least * (1 + 1e-9))
         snprintf(factor, sizeof factor, ", which scales variables by %.4g to %.4g", least, most);
-    if (hf_problem_constraints_of(p)) snprintf(where, sizeof where, "at the nearest design%s, ", factor);
-    snprintf(text, HF_NO_DESIGN_SIZE, "optimize: Levenberg-Marquardt has no feasible start: %s%s%s. %s%s%s", where,
+    snprintf(text, HF_NO_DESIGN_SIZE,
+             "optimize: Levenberg-Marquardt has no feasible start: at the nearest design%s, %s%s. %s%s%s", factor,
              hf_status_text(status), broken, *advice ? begin_with(advice, first) : wider,
              *advice || *wider ? "or loosen the limits" : "Loosen the limits",
              hf_no_design_cap(p, start.boundary_tension_ratio, hint));

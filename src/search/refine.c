@@ -850,7 +850,7 @@ static hf_status refine_from(hf_refine_problem *p, int max_iterations, hf_form_r
         start->status = HF_OUT_OF_LIMITS;
     HF_TRY(minimise(p, max_iterations, r));
     if (lacks_steps(p, r)) return HF_OK;
-    if (p->is_outside && !p->front && hf_refine_n_constraint(p) > 0) /* the nearest design shows what cannot be met */
+    if (p->is_outside && !p->front) /* the nearest design shows what cannot be met */
         memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (p->is_outside) return start->status == HF_OK ? HF_OUT_OF_LIMITS : start->status;
     if (p->front) HF_TRY(find_multipliers(p, r));

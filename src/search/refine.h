@@ -77,8 +77,8 @@ int hf_refine_generations(const hf_evaluator *evaluator, int population);
 /* Refines the design [n_variable], which has a shape and is within lower and upper [n_variable]. It is replaced by the
  * best design found, which is feasible and never worse. A start outside the limits is first moved into them. Linked
  * design variables keep their differences. watcher: NULL for none. workspace is scratch. Returns HF_OK, HF_NO_MEMORY,
- * HF_INTERRUPTED, the status that the watcher returned, or the status of the start if no feasible design was found. If
- * requirements constrain the search, the design is then the nearest one to them.
+ * HF_INTERRUPTED, the status that the watcher returned, or the status of the start if no feasible design was found. The
+ * design is then the nearest one to the limits.
  *
  * front: NULL, or a point of a Pareto front is sought. One objective of the evaluator, `front->least`, is then
  * minimised under limits on the others. All merits are values of this objective; for a ratio, they are its logarithm.
