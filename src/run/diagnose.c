@@ -696,12 +696,14 @@ void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf
                what, what_to_widen(p));
 }
 
-/* Returns true if the shape in the workspace misses a maximum of psi by less than the tolerance of the coupling: another shape of the same design may meet it. */
+/* Returns true if the shape in the workspace misses a maximum of psi, the only requirement, by less than the
+ * tolerance of the coupling: another shape of the same design may meet it. */
 static bool misses_by_tolerance(const hf_problem *p)
 {
     const hf_constraints *c = hf_problem_constraints_of(p);
-    return p->model.n_attachment && c && c->psi_most_m > 0 &&
-           hf_metrics_psi_m(&p->model, &p->workspace) < c->psi_most_m + p->settings.form.coupling.tof_m;
+    double by_m = c ? hf_metrics_psi_m(&p->model, &p->workspace) - c->psi_most_m : 0;
+    return p->model.n_attachment && c && c->n == 1 && c->psi_most_m > 0 && by_m > 0 &&
+           by_m < p->settings.form.coupling.tof_m;
 }
 
 const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const double *design, hf_status status,

@@ -125,9 +125,9 @@ static void warn_of_steps(const steps *q, const hf_refine_result *r)
     const char *what = has_merit(q) ? "the merit" : "psi";
     char lately[96] = "", predicted[96] = "";
     if (r->stop != HF_REFINE_MAX_ITERATIONS) return;
-    if (n == 1)
+    if (n == 1 && gain >= 0)
         snprintf(lately, sizeof lately, ": the last step lowered %s by %.2g %%", what, 100 * gain);
-    else if (n > 0)
+    else if (n > 0 && gain >= 0)
         snprintf(lately, sizeof lately, ": the last %d steps lowered %s by %.2g %%", n, what, 100 * gain);
     if (isfinite(r->predicted_gain))
         snprintf(predicted, sizeof predicted, "; the model predicts at most %.3g %% less", 100 * r->predicted_gain);

@@ -448,8 +448,9 @@ static double distance_outside(hf_refine_problem *p, bool *is_outside)
     const hf_constraints *c = p->v.objectives->constraints;
     double most = -INFINITY, of_limits = hf_watch_violation(&p->watch, p->w);
     *is_outside = !hf_watch_keeps(&p->watch, p->w);
-    for (int k = 0; k < c->n; k++) {
+    for (int k = 0; c && k < c->n; k++) {
         double distance = p->watch.constraint[k] / c->unit[k];
+        if (p->relaxed && k == c->psi) continue;
         most = fmax(most, distance);
         of_limits -= fmax(0, distance);
     }
@@ -465,7 +466,8 @@ static bool is_zero(const hf_refine_problem *p, const hf_refine_result *r)
 /* Returns true if the pretension of the start is scaled before the first step. */
 static bool is_scaled_first(const hf_refine_problem *p, int max_iterations, const hf_refine_result *r)
 {
-    return p->is_outside && r->iterations == 0 && max_iterations > 0 && !p->front && hf_refine_n_constraint(p) > 0;
+    return p->is_outside && r->iterations == 0 && max_iterations > 0 && !p->front &&
+           (p->relaxed || hf_refine_n_constraint(p) > 0);
 }
 
 /* Multiplies the pretension of a start that breaks a requirement by the factor that leads farthest into all of them, or
@@ -484,8 +486,9 @@ static hf_status scale_into(hf_refine_problem *p, hf_refine_result *r)
             if (distance > (nearest > 0 ? SCALE_WORSE * nearest : nearest)) break;
             if (!(distance < nearest)) continue;
             nearest = distance;
-            p->is_outside = is_outside;
+            p->is_outside = true; /* the nearest design is kept, whatever its objectives are */
             hf_refine_keep(p);
+            p->is_outside = is_outside;
         }
     HF_TRY(hf_refine_evaluate(p, p->at));
     p->violation = hf_watch_violation(&p->watch, p->w);
@@ -794,7 +797,7 @@ static bool is_not_worse(const hf_refine_problem *p, const hf_form_result *end, 
 {
     if (!p->relaxed) return hf_refine_merit(p, end) <= hf_refine_merit(p, start);
     if (start->psi_m > p->psi_most_m) return end->psi_m <= start->psi_m;
-    return end->psi_m <= p->psi_most_m && hf_refine_others(p, end) <= hf_refine_others(p, start);
+    return end->psi_m <= p->psi_most_m && hf_refine_others(p, end) <= p->others_at_start;
 }
 
 /* Replaces `design` by the best design if the caller's evaluator finds that it keeps all limits and is not worse than
@@ -844,6 +847,7 @@ static hf_status refine_from(hf_refine_problem *p, int max_iterations, hf_form_r
     p->is_outside = start->status != HF_OK;
     p->best_psi_m = start->psi_m;
     r->merit = r->start_merit = hf_refine_merit(p, start);
+    p->others_at_start = hf_refine_others(p, start);
     hf_refine_begin(p, design);
     if (watcher && watcher->state) hf_refine_resume(p, watcher->n_state, watcher->state, r);
     if (start->status == HF_OK && hf_watch_breaks(p->front, p->caller->objectives, 0, start->objective))
@@ -931,14 +935,14 @@ static hf_status tighten(const hf_evaluator *of, const relaxation *by, const dou
     HF_TRY(evaluate_alone(of, design, w, &end));
     r->start_merit = by->start_merit;
     r->merit = end.merit;
-    if (r->stop == HF_REFINE_STALLED || r->stop == HF_REFINE_MAX_ITERATIONS) return HF_OK;
+    if (r->stop == HF_REFINE_STALLED) return HF_OK;
     /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
     double weight = by->objectives.objective[by->objectives.n_objective - 1].settings.weight;
     double room_m = of->objectives->constraints->psi_most_m - end.psi_m;
     double fall = weight * weight * end.psi_m / end.merit;
     double part = end.merit > OTHERS_ZERO * by->merit ? fall * room_m / end.merit : 0;
     r->predicted_gain = fmax(r->predicted_gain, fmin(1, part));
-    if (part > SETTLED_GAIN) r->stop = HF_REFINE_STALLED;
+    if (part > SETTLED_GAIN && r->stop != HF_REFINE_MAX_ITERATIONS) r->stop = HF_REFINE_STALLED;
     return HF_OK;
 }
 

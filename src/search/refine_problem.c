@@ -195,6 +195,18 @@ double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_resu
     return sqrt(square);
 }
 
+double hf_refine_others(const hf_refine_problem *p, const hf_form_result *r)
+{
+    const hf_objectives *g = p->relaxed;
+    int n = g ? g->n_objective - 1 : 0;
+    bool is_norm = true; /* of the values; a maximum and values over nets are smooth in the merit only */
+    for (int k = 0; k < n; k++)
+        is_norm &= !hf_objectives_is_maximum(g->objective[k].settings.figure) && g->objective[k].n_net == 0;
+    if (n == 0 || is_norm) return hf_refine_norm(g, n, r);
+    double of_psi = p->psi_weight * r->objective[n];
+    return sqrt(fmax(0, r->merit * r->merit - of_psi * of_psi));
+}
+
 void hf_refine_weigh(hf_refine_problem *p, double weight)
 {
     p->psi_weight = weight;

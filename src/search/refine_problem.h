@@ -61,6 +61,7 @@ typedef struct {
     double zero;                      /* hf_refine_others below which nothing is left to gain */
     double psi_m, others;             /* psi and hf_refine_others of the design at `at` */
     double best_of_others;            /* hf_refine_others of the best design */
+    double others_at_start;           /* that of the start, if it is feasible */
     const hf_watch_front *front;      /* the objective to minimise and the limits on the others, or NULL */
     const hf_refine_watcher *watcher; /* NULL: no watcher */
     hf_status told;                   /* the last status of the watcher */
@@ -117,12 +118,9 @@ hf_status hf_refine_evaluate(hf_refine_problem *problem, const double *step);
 /* Returns the merit of the first n objectives of a shape, which may be infeasible. */
 double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_result *result);
 
-/* Returns the merit without the objective that replaces a maximum of psi, or 0 if there is none. */
-static inline double hf_refine_others(const hf_refine_problem *problem, const hf_form_result *result)
-{
-    const hf_objectives *objectives = problem->v.objectives;
-    return problem->relaxed ? hf_refine_norm(objectives, objectives->n_objective - 1, result) : 0;
-}
+/* Returns the merit without the objective that replaces a maximum of psi, or 0 if there is none. The result must have
+ * been found with the present weight. */
+double hf_refine_others(const hf_refine_problem *problem, const hf_form_result *result);
 
 /* Sets the weight of the objective that replaces a maximum of psi. Earlier results keep the merit of the old weight. */
 void hf_refine_weigh(hf_refine_problem *problem, double weight);
