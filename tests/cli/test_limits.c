@@ -328,6 +328,30 @@ START_TEST(a_maximum_of_psi_and_tensions_are_held_together)
 }
 END_TEST
 
+/* The start has slack ties, and the scaled one has larger forces on the supports. Its design is kept all the same. The
+ * merit of these forces is smooth, unlike their maximum, and the best end is that of the lowest merit. */
+START_TEST(a_scaled_start_is_kept_whatever_its_merit)
+{
+    const char *c = file_with(
+        "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 3, rear_distance_m: 1.8}}\n"
+                  "form: {pretension_N: 10, prestress: exact}\n"
+                  "optimize:\n  method: lm\n  variables: [{set: all, vary: force_density, range: 60 %}]\n"
+                  "  objective: [{figure: pull}]\n"
+                  "requirements: [{figure: psi, at_most: 0.0002}, {figure: tension, set: tie, at_least: 3}]\n");
+    const char *out = temp("r.h5");
+    HIFDM(0, "run", c, "-o", out);
+    EXPECT(out, "--", "a['refine'].attrs['merit'] < 10.137", "1.999e-4 < a['refine'].attrs['psi_m'] <= 2e-4");
+    HIFDM(0, "run", c, "-o", out, "--force", "--set", "scene.paraboloid.rings=4", "--set",
+          "optimize.variables.0.range=80 %", "--set", "requirements.1.at_least=5.5", "--set",
+          "optimize.refine_steps=3");
+    OUT("verdict: pass");
+    HIFDM(0, "run", c, "-o", out, "--force", "--set", "scene.paraboloid.rings=4", "--set",
+          "optimize.variables.0.range=80 %", "--set", "requirements=[{figure: psi, at_most: 0.0002}]", "--set",
+          "optimize.limits=[{figure: tension, set: tie, bounds: [5.5, 100]}]", "--set", "optimize.refine_steps=12");
+    OUT("verdict: pass");
+}
+END_TEST
+
 /* The first refinement of these seeds ends outside the limit on the deflection. */
 START_TEST(auto_starts_again_from_outside_the_limits)
 {
@@ -511,6 +535,7 @@ Suite *suite_cli_limits(void)
     tcase_add_loop_test(tests, objectives_use_all_of_a_maximum_of_psi, 0, 3);
     tcase_add_loop_test(tests, room_for_psi_is_never_in_the_way, 0, 10);
     tcase_add_test(tests, a_maximum_of_psi_and_tensions_are_held_together);
+    tcase_add_test(tests, a_scaled_start_is_kept_whatever_its_merit);
     tcase_add_loop_test(tests, auto_starts_again_from_outside_the_limits, 0, 3);
     tcase_add_test(tests, a_merit_without_a_value_is_no_merit);
     tcase_add_test(tests, scipy_gains_nothing_on_capped_nets);
