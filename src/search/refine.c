@@ -70,8 +70,9 @@
 #define SETTLED_GAIN 1e-4
 #define SETTLED_OBJECTIVE 1e-3
 /* An objective replaces a maximum of psi. Its weight is adapted until the other objectives could gain less than
- * ROOM_LEFT of their merit by more psi. WEIGHT_STEP is the largest factor of one adaptation while psi has been on one
- * side of the maximum only. A maximum out of reach is given up if psi falls by less than OUT_OF_REACH in such a step. */
+ * ROOM_LEFT of their merit by more psi. WEIGHT_STEP is the largest factor of one adaptation while psi has been on
+ * one side of the maximum only. A maximum out of reach is given up if psi falls by less than OUT_OF_REACH in such
+ * a step. */
 #define ROOM_LEFT 1e-6
 #define OTHERS_ZERO 1e-10 /* a part of the merit of the others at the start that counts as zero */
 #define WEIGHT_STEP 10
