@@ -74,6 +74,7 @@
  * one side of the maximum only. A maximum out of reach is given up if psi falls by less than OUT_OF_REACH in such
  * a step. */
 #define ROOM_LEFT 1e-6
+#define ROOM_LEFT_UNUSED 1e-5 /* the same if psi is below half of the maximum, which then has little effect */
 #define OTHERS_ZERO 1e-10 /* a part of the merit of the others at the start that counts as zero */
 #define WEIGHT_STEP 10
 #define ROUNDING_STEP 1e3 /* factor of a weight with which the merit is rounding */
@@ -652,7 +653,8 @@ static double next_weight(hf_refine_problem *p)
     bool is_exact = p->noise < NOISE_MOST * p->others;
     if (p->psi_m <= most) {
         if (p->others <= p->zero) return 0;
-        if (is_exact && weight * weight * p->psi_m * (most - p->psi_m) < ROOM_LEFT * p->others * p->others) return 0;
+        double left = ratio < 0.5 ? ROOM_LEFT_UNUSED : ROOM_LEFT;
+        if (is_exact && weight * weight * p->psi_m * (most - p->psi_m) < left * p->others * p->others) return 0;
         p->weight_high = weight;
         p->psi_high_m = p->psi_m;
     } else {
