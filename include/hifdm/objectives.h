@@ -142,6 +142,12 @@ typedef struct {
     void *block;       /* owned memory behind the arrays */
 } hf_objectives;
 
+/* Returns true if constraint k is judged: the last objective does not replace it. */
+static inline bool hf_objectives_judges(const hf_objectives *objectives, int k)
+{
+    return !objectives->replaces_psi || k != objectives->constraints->psi;
+}
+
 /* Contains the memory of one thread for the objectives. In addition to scratch memory, the struct contains the data
  * that hf_objectives_linearise prepares for hf_objectives_push. */
 typedef struct hf_objectives_point {

@@ -656,9 +656,8 @@ hf_status hf_built_constraints_make(const hf_required *q, const hf_model *m, con
         c->corner_row[i] = m->row_of_node[facets->corner[i]];
     c->as.unit = c->unit;
     c->as.limit = c->as_limit;
-    for (int k = 0; k < c->as.n; k++)
-        c->as_limit[k] = write_limit(c, k, &c->limit[k]) ? &c->limit[k] : NULL;
     for (int k = 0; k < c->as.n; k++) {
+        c->as_limit[k] = write_limit(c, k, &c->limit[k]) ? &c->limit[k] : NULL;
         double most_m = q->row[c->row[k]].at_most;
         bool is_psi = q->row[c->row[k]].figure == HF_REQUIRED_PSI && c->state[k] == 0 && c->is_high[k];
         if (is_psi && (c->as.psi_most_m == 0 || most_m < c->as.psi_most_m)) {

@@ -75,7 +75,7 @@
  * a step. */
 #define ROOM_LEFT 1e-6
 #define ROOM_LEFT_UNUSED 1e-5 /* the same if psi is below half of the maximum, which then has little effect */
-#define OTHERS_ZERO 1e-10 /* a part of the merit of the others at the start that counts as zero */
+#define OTHERS_ZERO 1e-10     /* a part of the merit of the others at the start that counts as zero */
 #define WEIGHT_STEP 10
 #define ROUNDING_STEP 1e3 /* factor of a weight with which the merit is rounding */
 #define WEIGHTS_MAX 20
@@ -452,7 +452,7 @@ static double distance_outside(hf_refine_problem *p, bool *is_outside)
     *is_outside = !hf_watch_keeps(&p->watch, p->w);
     for (int k = 0; c && k < c->n; k++) {
         double distance = p->watch.constraint[k] / c->unit[k];
-        if (p->relaxed && k == c->psi) continue;
+        if (!hf_objectives_judges(p->v.objectives, k)) continue;
         most = fmax(most, distance);
         of_limits -= fmax(0, distance);
     }

@@ -108,7 +108,7 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     const hf_constraints *constraints = v->objectives ? v->objectives->constraints : NULL;
     for (int k = 0; constraints && k < constraints->n; k++) {
         hf_watched item = no_item;
-        if (v->objectives->replaces_psi && k == constraints->psi) continue;
+        if (!hf_objectives_judges(v->objectives, k)) continue;
         if (constraints->limit && constraints->limit[k]) {
             add_row(v, constraints->limit[k], q);
             continue;
@@ -197,7 +197,7 @@ double hf_watch_violation(hf_watch *q, const hf_workspace *w)
     double sum = hf_limits_violation(q->v, w);
     look(q, w);
     for (int k = 0; q->constraint && k < g->constraints->n; k++)
-        if (!(g->replaces_psi && k == g->constraints->psi)) sum += fmax(0, q->constraint[k]) / g->constraints->unit[k];
+        if (hf_objectives_judges(g, k)) sum += fmax(0, q->constraint[k]) / g->constraints->unit[k];
     for (int k = q->n_cap_of_limits; k < q->n_cap; k++)
         if (isfinite(q->cap[k])) sum += fmax(0, ratio_of(q, k) / q->cap[k] - 1);
     for (int i = 0; i < q->n; i++) {

@@ -160,7 +160,7 @@ static hf_status judge_constraints(const hf_evaluator *v, const hf_workspace *w,
     if (!c) return HF_OK;
     HF_TRY(c->measure(point->constraints, w, v->by_density, point->constraint));
     for (int k = 0; k < c->n && !v->by_density; k++)
-        if (!(v->objectives->replaces_psi && k == c->psi)) r->violation += fmax(0, point->constraint[k]) / c->unit[k];
+        if (hf_objectives_judges(v->objectives, k)) r->violation += fmax(0, point->constraint[k]) / c->unit[k];
     return HF_OK;
 }
 

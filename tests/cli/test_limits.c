@@ -242,10 +242,9 @@ END_TEST
 
 #define CYLINDER                                                                                                       \
     "scene:\n"                                                                                                         \
-    "  parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 15.95, modules: [11, 2], pattern: "          \
-    "triangle, "                                                                                                       \
-    "cells_per_module: [2, 1], spacing: equal_projected, boundary: outer_edge, scallop: 0.1754, "                      \
-    "supports: module_corners, edge_tie_m: 0.274}\n"                                                                   \
+    "  parabolic_cylinder: {aperture_m: 10, length_m: 12, focal_length_m: 15.95, modules: [11, 2], "                   \
+    "pattern: triangle, cells_per_module: [2, 1], spacing: equal_projected, boundary: outer_edge, "                    \
+    "scallop: 0.1754, supports: module_corners, edge_tie_m: 0.274}\n"                                                  \
     "form: {pretension_N: 10}\n"
 
 /* A requirement on tensions is the same limit as a row of optimize.limits. */

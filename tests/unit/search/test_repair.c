@@ -146,6 +146,10 @@ static hf_status linearise(void *room, int n_rate, hf_constraints_spread *spread
     return HF_OK;
 }
 
+static const double unit = 1;
+static const hf_constraints one_constraint = {
+    .n = 1, .unit = &unit, .open = open_nothing, .close = close_nothing, .measure = measure, .linearise = linearise};
+
 /* The claim is made for a cap far below the least ratio of a generation, and no other design has a ratio below the one
  * that it names. It is not made for a cap that designs meet, nor before there is a model. */
 START_TEST(a_cap_out_of_reach_is_known)
@@ -196,17 +200,10 @@ START_TEST(only_a_requirement_out_of_reach_is_named)
         double change_N;
         bool has_no_rates, is_named;
     } of[] = {{5, false, true}, {50, false, false}, {5, true, false}, {0.02, false, false}};
-    static const double unit = 1;
-    const hf_constraints c = {.n = 1,
-                              .unit = &unit,
-                              .open = open_nothing,
-                              .close = close_nothing,
-                              .measure = measure,
-                              .linearise = linearise};
     hf_repair_doubt found;
     begin(HF_RULE_FORCE_DENSITY, 0.1);
     hf_population *now = &d.optimiser.population;
-    hf_objectives objectives = {.model = &d.r.net.model, .constraints = &c};
+    hf_objectives objectives = {.model = &d.r.net.model, .constraints = &one_constraint};
     d.r.evaluator.boundary_ratio_cap = INFINITY;
     required.cable = d.r.net.model.variable_cable[0];
     required.has_no_rates = of[_i].has_no_rates;
@@ -228,16 +225,9 @@ END_TEST
 
 START_TEST(children_come_within_requirements)
 {
-    static const double unit = 1;
-    const hf_constraints c = {.n = 1,
-                              .unit = &unit,
-                              .open = open_nothing,
-                              .close = close_nothing,
-                              .measure = measure,
-                              .linearise = linearise};
     begin(HF_RULE_FORCE_DENSITY, 0.8);
     hf_population *now = &d.optimiser.population, *next = &d.optimiser.next;
-    hf_objectives objectives = {.model = &d.r.net.model, .constraints = &c};
+    hf_objectives objectives = {.model = &d.r.net.model, .constraints = &one_constraint};
     d.r.evaluator.boundary_ratio_cap = INFINITY;
     required.cable = d.r.net.model.variable_cable[0];
     propose(9);
