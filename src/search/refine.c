@@ -967,7 +967,8 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
                            .way = 1,
                            .settled_merit = INFINITY};
     relaxation relaxed = {.merit = 0};
-    if (!front && has_replaceable_psi(evaluator->objectives)) HF_TRY(relax(evaluator, design, w, &relaxed));
+    bool has_maximum = !front && has_replaceable_psi(evaluator->objectives);
+    if (has_maximum) HF_TRY(relax(evaluator, design, w, &relaxed));
     if (relaxed.merit > 0) {
         p.v = relaxed.v;
         p.caller = &relaxed.v;
@@ -978,8 +979,8 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
     p.v.boundary_ratio_cap = INFINITY;
     p.v.limits = NULL;
     hf_refine_problem sparse = p; /* comes first where it is faster */
-    sparse.is_sparse =
-        !front && hf_refine_is_sparse(evaluator) && !(watcher && hf_refine_was_dense(watcher->n_state, watcher->state));
+    sparse.is_sparse = !front && hf_refine_is_sparse(evaluator) && has_maximum == (relaxed.merit > 0) &&
+                       !(watcher && hf_refine_was_dense(watcher->n_state, watcher->state));
     sparse.damping = SPARSE_DAMPING_FIRST;
     hf_refine_watcher from_there = watcher ? *watcher : (hf_refine_watcher){0};
     weigh_first(&relaxed, sparse.is_sparse ? &sparse : &p);
