@@ -122,6 +122,9 @@ double hf_refine_norm(const hf_objectives *objectives, int n, const hf_form_resu
  * been found with the present weight. */
 double hf_refine_others(const hf_refine_problem *problem, const hf_form_result *result);
 
+/* Returns true if an objective can replace a maximum of psi among the constraints. */
+bool hf_refine_has_maximum(const hf_objectives *objectives);
+
 /* Sets the weight of the objective that replaces a maximum of psi. Earlier results keep the merit of the old weight. */
 void hf_refine_weigh(hf_refine_problem *problem, double weight);
 
