@@ -447,7 +447,8 @@ START_TEST(a_cap_that_the_case_does_not_give_is_told_as_the_default)
                                       "optimize.front=[{figure: psi}, {figure: evenness, set: edge}]",
                                       "optimize.limits=[{figure: tension, set: stay, bounds: [1, 90]}]"};
     static const char *const what[] = {
-        ": the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to c3 is 22.2222, but the "
+        ": at the nearest design, the boundary tension ratio exceeds optimize.boundary_ratio_cap: ratio of cable c4 to "
+        "c3 is 22.2222, but the "
         "bound of boundary_ratio_cap is 10",
         " are above boundary_ratio_cap 10. The nearest design has the ratio 22.22. Raise optimize.boundary_ratio_cap, "
         "or widen "
