@@ -76,6 +76,7 @@
 #define ROOM_LEFT_UNUSED 1e-5 /* the same if psi is below half of the maximum, which then has little effect */
 #define OTHERS_ZERO 1e-10     /* a part of the merit of the others at the start that counts as zero */
 #define WEIGHT_STEP 10
+#define LOOSEN 0.7        /* factor of the first weight after a step inside the maximum [0.3 to 0.9] */
 #define ROUNDING_STEP 1e3 /* factor of a weight with which the merit is rounding */
 #define WEIGHTS_MAX 20
 #define OUT_OF_REACH 1e-3
@@ -585,14 +586,26 @@ static void note_start(hf_refine_problem *p, const hf_refine_result *r)
     p->best_of_others = p->others;
 }
 
+/* Lowers the first weight of psi if psi is below its maximum and a smaller weight lets the merit of the others fall by
+ * more than the last step, which promised `promised_part`. With a weight that is too large, steps are short. */
+static void loosen(hf_refine_problem *p, double promised_part, hf_refine_result *r)
+{
+    double w = p->psi_weight, room_m = p->psi_most_m - p->psi_m;
+    if (!p->relaxed || p->weight_low > 0 || !(w * w * p->psi_m * room_m > promised_part * p->others * p->others))
+        return;
+    hf_refine_weigh(p, w * fmin(sqrt(p->psi_m / p->psi_most_m), LOOSEN));
+    r->merit = hypot(p->others, p->psi_weight * p->psi_m);
+}
+
 /* Moves to the end of a step, which has gained this part of what it promised. Returns HF_OK or the status of the
  * failure. */
-static hf_status accept(hf_refine_problem *p, double merit, double part, hf_refine_result *r)
+static hf_status accept(hf_refine_problem *p, double merit, double part, double promised_part, hf_refine_result *r)
 {
     double share = 2 * part - 1;
     hf_refine_keep(p);
     r->merit = merit;
     learn_pressure(p);
+    loosen(p, promised_part, r);
     if (part > 0 && isfinite(part))
         p->damping =
             fmax(DAMPING_LEAST, p->damping * fmax(p->is_sparse ? SPARSE_FALL : 0.1, 1 - share * share * share));
@@ -645,9 +658,10 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
             p->damping *= DAMPING_TOO_MUCH;
         }
         status = HF_OK;
-        count_settled(p, is_kept ? merit : r->merit, part_of(promise, r->merit), is_kept);
+        double promised_part = part_of(promise, r->merit);
+        count_settled(p, is_kept ? merit : r->merit, promised_part, is_kept);
         if (is_kept) {
-            status = accept(p, merit, (before - after) / gain, r);
+            status = accept(p, merit, (before - after) / gain, promised_part, r);
         } else {
             p->damping *= p->growth;
             p->growth *= 2;
