@@ -20,6 +20,7 @@
 #define SAME_RATIO 1e-6    /* relative difference up to which values count as equal */
 #define RESOLVED_M 1e-9    /* differences of lengths below this are rounding */
 #define ROUNDING 1e-12     /* part of psi by which an objective may differ from it through rounding */
+#define MARGIN_SHOWN 5e-4  /* relative margins below this print as 0.0 % */
 #define REACHED_RATIO 1e-9 /* rounding of an objective, relative to its value after form-finding */
 
 const char *hf_merged_stage_word(const hf_merged *m, hf_merged_stage stage)
@@ -358,7 +359,7 @@ bool hf_merged_is_margin(const hf_merged *m, int figure)
 static double rank_value(const hf_merged *m, int figure, int i)
 {
     double value = m->figure[figure].value.value[i];
-    if (hf_merged_is_margin(m, figure)) value = -value;
+    if (hf_merged_is_margin(m, figure)) value = fabs(value) < MARGIN_SHOWN ? 0 : -value;
     return isnan(value) ? (double)INFINITY : value;
 }
 
@@ -367,29 +368,13 @@ double hf_merged_rank_value(const hf_merged *m, int i)
     return hf_merged_is_done(m, i) ? rank_value(m, m->lead, i) : (double)INFINITY;
 }
 
-bool hf_merged_ranks_before(const hf_merged *m, int i, int j)
-{
-    int by_verdict = compare_verdicts(m, i, j);
-    if (by_verdict) return by_verdict < 0;
-    double a = m->lead < 0 ? 0 : rank_value(m, m->lead, i), b = m->lead < 0 ? 0 : rank_value(m, m->lead, j);
-    return a == b ? i < j : a < b;
-}
-
 /* ---- the best point ---- */
 
-/* Holds the figures that rank points: the first that varies, and others for points that are equal in it. Values below
- * `floor` are equal. */
-enum { LEADS_MAX = 3 };
-typedef struct {
-    int figure[LEADS_MAX], n, most;
-    double floor[LEADS_MAX];
-} leads;
-
 /* Appends a figure to the ranking, if it varies and there is room. */
-static void try_lead(const hf_merged *m, hf_merged_stage stage, const char *key, leads *to)
+static void try_lead(hf_merged *m, hf_merged_stage stage, const char *key)
 {
     const hf_merged_figure *f = hf_merged_find(m, stage, key);
-    if (to->n < to->most && f && !f->is_same) to->figure[to->n++] = (int)(f - m->figure);
+    if (m->leads.n < m->leads.most && f && !f->is_same) m->leads.figure[m->leads.n++] = (int)(f - m->figure);
 }
 
 /* Returns the rounding of an objective. Values below it do not rank points. */
@@ -403,63 +388,67 @@ static double rounding_of(const hf_merged *m, const char *objective)
 }
 
 /* Returns whether point i ranks before `best`, which is -1 for none. Differences of rounding do not count. */
-static bool is_better(const hf_merged *m, const leads *by, int i, int best)
+static bool is_better(const hf_merged *m, int i, int best)
 {
     int by_verdict = best < 0 ? -1 : compare_verdicts(m, i, best);
     if (by_verdict) return by_verdict < 0;
-    for (int k = 0; k < by->n; k++) {
-        double a = fmax(rank_value(m, by->figure[k], i), by->floor[k]),
-               b = fmax(rank_value(m, by->figure[k], best), by->floor[k]);
+    for (int k = 0; k < m->leads.n; k++) {
+        double a = fmax(rank_value(m, m->leads.figure[k], i), m->leads.floor[k]),
+               b = fmax(rank_value(m, m->leads.figure[k], best), m->leads.floor[k]);
         if (a != b && !(fabs(a - b) <= SAME_RATIO * fmax(fabs(a), fabs(b)) && isfinite(a - b))) return a < b;
     }
     return false;
 }
 
+bool hf_merged_ranks_before(const hf_merged *m, int i, int j)
+{
+    return is_better(m, i, j) || (i < j && !is_better(m, j, i));
+}
+
 /* Chooses the figures that rank points of equal verdicts. The smallest relative margin comes first, then the objective
  * where it is not psi alone, as merit if there are several, then psi of the as-built nets where known, then psi of the
  * result. The surface error decides where psi is the same everywhere. */
-static leads choose_leads(const hf_merged *m)
+static void choose_leads(hf_merged *m)
 {
     static const char *const error[] = {"facet_half_path_rms_m", "half_path_rms_m", "facet_fit_half_path_rms_m",
                                         "fit_half_path_rms_m"};
     const char *objective = NULL;
     bool has_other = false;
-    leads by = {.n = 0, .most = 1};
-    try_lead(m, HF_MERGED_REQUIREMENTS, HF_MERGED_MARGIN, &by);
-    if (by.n) by.floor[0] = -INFINITY;
-    by.most = by.n + 2;
+    m->leads.most = 1;
+    try_lead(m, HF_MERGED_REQUIREMENTS, HF_MERGED_MARGIN);
+    int n_before = m->leads.n;
+    if (n_before) m->leads.floor[0] = -INFINITY;
+    m->leads.most = n_before + 2;
     for (int k = 0; k < m->n_figure; k++) {
         if (m->figure[k].stage != m->main || strncmp(m->figure[k].key, "objective_", 10) != 0) continue;
         objective = objective ? "merit" : m->figure[k].key;
         has_other |= !m->figure[k].is_psi;
     }
-    int n_before = by.n;
-    if (has_other) try_lead(m, m->main, objective, &by);
-    if (by.n > n_before) by.floor[n_before] = rounding_of(m, objective);
-    try_lead(m, HF_MERGED_BUILT, "psi_95_m", &by);
-    try_lead(m, m->main, "psi_m", &by);
+    if (has_other) try_lead(m, m->main, objective);
+    if (m->leads.n > n_before) m->leads.floor[n_before] = rounding_of(m, objective);
+    try_lead(m, HF_MERGED_BUILT, "psi_95_m");
+    try_lead(m, m->main, "psi_m");
     for (size_t k = 0; k < sizeof error / sizeof *error; k++)
-        try_lead(m, m->main, error[k], &by);
-    return by;
+        try_lead(m, m->main, error[k]);
 }
 
 /* Chooses the ranking figure and the best point. Where nothing is required, the best point needs a value of that
- * figure. */
+ * figure. Where the best point has none of the first figure but rounding, the second one ranks. */
 static void choose_best(hf_merged *m)
 {
-    leads by = choose_leads(m);
-    bool is_judged = hf_merged_is_judged(m), varies = by.n > 0;
-    m->lead = by.n ? by.figure[0] : -1;
+    choose_leads(m);
+    bool is_judged = hf_merged_is_judged(m), varies = m->leads.n > 0;
+    m->lead = m->leads.n ? m->leads.figure[0] : -1;
     m->best = -1;
     for (int i = 1; i < m->n && is_judged && !varies; i++)
         varies = compare_verdicts(m, 0, i) != 0;
     for (int i = 0; i < m->n && varies; i++)
         if (hf_merged_is_done(m, i) && (is_judged || isfinite(m->figure[m->lead].value.value[i])) &&
-            is_better(m, &by, i, m->best))
+            is_better(m, i, m->best))
             m->best = i;
-    bool is_rounding = m->best >= 0 && m->lead >= 0 && !hf_merged_is_margin(m, m->lead) &&
-                       m->figure[m->lead].value.value[m->best] <= by.floor[0];
-    if (is_rounding && by.n > 1) m->lead = by.figure[1];
+    if (m->best < 0 || m->leads.n < 2) return;
+    double value = rank_value(m, m->lead, m->best);
+    if (hf_merged_is_margin(m, m->lead) ? value == 0 : value <= m->leads.floor[0]) m->lead = m->leads.figure[1];
 }
 
 /* ---- columns of the requirements ---- */

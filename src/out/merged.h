@@ -59,6 +59,7 @@ typedef struct {
 #define HF_MERGED_DIFFER_N 5    /* fewer replicates cannot give such a p-value */
 
 #define HF_MERGED_FIGURE_MAX 1536
+#define HF_MERGED_LEADS_MAX 3
 
 typedef struct {
     const char *path; /* borrowed */
@@ -79,8 +80,14 @@ typedef struct {
     /* [n][n_row] value and bounds of each row; NaN: none. The series are empty in files of earlier versions. */
     hf_series row_value, row_at_least, row_at_most;
     hf_merged_judgement *judgement; /* [n] owned */
-    /* The figure that ranks the points, after what they fail (hf_merged_is_judged), and the best point; -1 when nothing
-     * varies. The best point has the minimum of this figure or, of HF_MERGED_MARGIN, its maximum. */
+    /* The figures that rank the points, after what they fail (hf_merged_is_judged): the next one ranks points that are
+     * equal in those before. Values below `floor` are equal, and so are margins that print as 0. */
+    struct {
+        int figure[HF_MERGED_LEADS_MAX], n, most;
+        double floor[HF_MERGED_LEADS_MAX];
+    } leads;
+    /* The first of them that tells the best point from others, and the best point; -1 when nothing varies. The best
+     * point has the minimum of this figure or, of HF_MERGED_MARGIN, its maximum. */
     int lead, best;
     int replicate;          /* the axis of the replicates; -1: none */
     int n_group;            /* 0: the study has no replicates, or nothing varies */
@@ -162,7 +169,7 @@ bool hf_merged_agree(const hf_merged *merged, int axis, int i, int j);
 double hf_merged_rank_value(const hf_merged *merged, int point);
 double hf_merged_median(const hf_merged *merged, const hf_merged_group *group);
 
-/* Returns whether point i ranks before point j, without regard to rounding. */
+/* Returns whether point i ranks before point j. Points that are equal but for rounding keep their order. */
 bool hf_merged_ranks_before(const hf_merged *merged, int i, int j);
 
 /* Lists the intervals of an axis of numbers within which all points pass, by the first and the last value of each, in

@@ -44,7 +44,7 @@ typedef struct {
     bool is_all;          /* true: all points or groups are rows; false: those of `best` */
     int n_row, best[POINTS_BEST];
     int n_required, required[HF_REQUIREMENT_ROWS_MAX]; /* requirements in the order of their columns */
-    bool is_short; /* only the first requirements have a column, and other figures have none */
+    bool is_short; /* only the first requirements and the ranking figure have a column */
 } table;
 
 /* Makes a name printable, which may contain any characters, with blanks for "_". */
@@ -466,7 +466,7 @@ static void add_columns(table *t)
     if (m->n_row > 0) add_column(t, (column){.kind = OF_TIGHTEST, .head = "tightest requirement and its margin"});
     for (int k = 0; k < t->n_required && !(t->is_short && k == REQUIRED_MOST); k++)
         add_column(t, required_column(m, t->required[k]));
-    for (int rank = 0; rank < N_RANK && !t->is_short; rank++)
+    for (int rank = 0; rank < (t->is_short ? 1 : N_RANK); rank++)
         for (int k = 0; k < m->n_figure; k++)
             if (is_shown(m, &m->figure[k]) && !m->figure[k].is_same && rank_of(m, k) == rank)
                 add_column(t, figure_column(m, k));

@@ -235,6 +235,25 @@ START_TEST(a_point_that_fails_is_not_the_best)
 }
 END_TEST
 
+/* Refined designs lie at the bound of psi. Their margins are rounding, so the objective ranks them. */
+START_TEST(margins_of_rounding_do_not_rank)
+{
+    const char *path = file_with(
+        "s.yaml", NET "optimize: {method: lm, range_N: 4, objective: [{figure: evenness, set: boundary}]}\n"
+                      "requirements: [{figure: psi, at_most: 1}]\nsweep:\n  requirements.0.at_most: [3.3e-4, 3.5e-4, "
+                      "3.4e-4]\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    HIFDM(0, "show", temp("s.h5"), "--json");
+    const char *json = out_as("s.json");
+    HIFDM(0, "show", temp("s.h5"));
+    OUT("ranked by     failed requirements, then undecided ones, then objective evenness boundary");
+    EXPECT(temp("s.h5"), json, "--", "[p['verdict'] for p in b['points']] == ['pass'] * 3",
+           "(abs(a['points/requirements/relative_margin_min'][:]) < 1e-4).all()",
+           "np.argmin(a['points/refine/merit'][:]) == 1 == texts(a['points/id']).index(b['best'])",
+           "b['best_by'] == 'objective_0_evenness_boundary'");
+}
+END_TEST
+
 /* Objectives that no point reaches: their merit decides which is best, however small psi's part in it is. */
 START_TEST(objectives_say_which_point_is_best)
 {
@@ -580,6 +599,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, the_tightest_requirements_have_columns);
     tcase_add_test(tcase, a_failed_point_has_no_positive_margin);
     tcase_add_test(tcase, a_point_that_fails_is_not_the_best);
+    tcase_add_test(tcase, margins_of_rounding_do_not_rank);
     tcase_add_test(tcase, objectives_say_which_point_is_best);
     tcase_add_test(tcase, a_best_point_at_the_end_of_an_axis_is_told);
     tcase_add_test(tcase, failed_points_are_told_and_never_the_best);
