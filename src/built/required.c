@@ -358,13 +358,14 @@ static double mass_error_kg(const hf_required *q, const hf_required_column *c, c
 }
 
 static double error_of(const hf_required *q, const hf_required_column *c, const hf_required_shape *s, double bound_m,
-                       double value)
+                       double psi_bound_m, double value)
 {
     const hf_model *m = s->model;
     double error_N, least_N, most_N, at;
     switch (c->figure) {
-    case HF_REQUIRED_PSI: /* an RMS is a norm, which changes by at most the norm of the change; a best fit lowers it */
-    case HF_REQUIRED_SURFACE:
+    case HF_REQUIRED_PSI:
+        return psi_bound_m;
+    case HF_REQUIRED_SURFACE: /* an RMS is a norm, which changes by at most the norm of the change; a fit lowers it */
     case HF_REQUIRED_FACETS:
     case HF_REQUIRED_DEFLECTION:
         return bound_m;
@@ -398,11 +399,12 @@ static double error_of(const hf_required *q, const hf_required_column *c, const 
 }
 
 void hf_required_bound_errors(const hf_required *q, int state, const hf_required_shape *s, double bound_m,
-                              const double *value, double *error)
+                              double psi_bound_m, const double *value, double *error)
 {
     for (int k = 0; k < q->n_column; k++)
-        error[k] =
-            is_needed(&q->column[k], false, state) ? error_of(q, &q->column[k], s, bound_m, value[k]) : (double)NAN;
+        error[k] = is_needed(&q->column[k], false, state)
+                       ? error_of(q, &q->column[k], s, bound_m, psi_bound_m, value[k])
+                       : (double)NAN;
 }
 
 /* ---- margins ---- */

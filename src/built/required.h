@@ -94,10 +94,10 @@ bool hf_required_needs_surface(const hf_required *required, bool is_many, int st
 void hf_required_measure(const hf_required *required, bool is_many, int state, const hf_required_shape *shape,
                          double *value, double *item);
 
-/* Bounds the errors of these values, error [n_column], if no node is further than bound_m from its exact position (NaN:
- * not known). NaN: no bound is known. */
+/* Bounds the errors of these values, error [n_column], if no node is further than bound_m from its exact position and
+ * psi no further than psi_bound_m from its exact value (NaN: not known). NaN: no bound is known. */
 void hf_required_bound_errors(const hf_required *required, int state, const hf_required_shape *shape, double bound_m,
-                              const double *value, double *error);
+                              double psi_bound_m, const double *value, double *error);
 
 /* Returns whether a row has two bounds other than 0. Its distances are then relative to the bounds, because the nearer
  * one must be found. */

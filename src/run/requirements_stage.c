@@ -153,7 +153,7 @@ hf_status hf_requirements_stage_take(hf_requirements_stage *q, int state, const 
             (hf_surface_paths){s->half_path_rms_m, fit_m, s->facet_half_path_rms_m, s->facet_fit_half_path_rms_m};
     }
     hf_required_measure(of, false, state, &shape, q->value + at, q->item + at);
-    hf_required_bound_errors(of, state, &shape, r->position_bound_m, q->value + at, q->error + at);
+    hf_required_bound_errors(of, state, &shape, r->position_bound_m, r->psi_bound_m, q->value + at, q->error + at);
     return HF_OK;
 }
 

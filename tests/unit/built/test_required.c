@@ -273,7 +273,7 @@ START_TEST(error_bounds_hold_for_displaced_nodes)
             apply_laws(m, w, position_m, tension_N);
             hf_required_shape s = {.model = m, .position_m = position_m, .tension_N = tension_N, .work = w};
             hf_required_measure(&q, false, 0, &s, value[k], item);
-            hf_required_bound_errors(&q, 0, &s, bound_m, value[k], error);
+            hf_required_bound_errors(&q, 0, &s, bound_m, bound_m, value[k], error);
         }
         for (int k = 0; k < q.n_column; k++) {
             double off = fabs(value[1][k] - value[0][k]);
@@ -326,7 +326,7 @@ START_TEST(error_bounds_hold_for_surfaces)
                                              is.facet_fit_half_path_rms_m},
                                    .work = &p.workspace};
             hf_required_measure(&q, false, 0, &s, value[k], item);
-            hf_required_bound_errors(&q, 0, &s, bound_m, value[k], error);
+            hf_required_bound_errors(&q, 0, &s, bound_m, bound_m, value[k], error);
         }
         for (int k = 0; k < 4; k++) {
             ck_assert_double_eq(error[k], bound_m);
@@ -368,18 +368,18 @@ START_TEST(what_has_no_bound_says_so)
     hf_required_shape s = {
         .model = &net.model, .position_m = net.model.position_m, .tension_N = tension_N, .work = &net.work};
     hf_required_measure(&q, false, 0, &s, value, item);
-    hf_required_bound_errors(&q, 0, &s, NAN, value, error);
+    hf_required_bound_errors(&q, 0, &s, NAN, NAN, value, error);
     ck_assert(error[0] == 0 && error[1] == 0 && isnan(error[2]) && isnan(error[3]) && isnan(error[4]));
     ck_assert(error[5] == 0 && error[6] == 0);
-    hf_required_bound_errors(&q, 0, &s, 1e-9, value, error);
+    hf_required_bound_errors(&q, 0, &s, 1e-9, 0.5 * 1e-9, value, error);
     ck_assert_double_eq_tol(error[2], 2e-9 * 20, 1e-15); /* of the support at 1 m, with 20 N */
     ck_assert_double_eq_tol(error[3], 3 * 2e-9, 1e-15);
-    ck_assert_double_eq(error[4], 1e-9);
-    hf_required_bound_errors(&q, 1, &s, 1e-9, value, error);
+    ck_assert_double_eq(error[4], 0.5e-9);
+    hf_required_bound_errors(&q, 1, &s, 1e-9, 0.5 * 1e-9, value, error);
     for (int k = 0; k < q.n_column; k++)
         ck_assert(isnan(error[k])); /* no row needs this load case */
     net.work.law[1] = HF_LAW_LENGTH;
-    hf_required_bound_errors(&q, 0, &s, 1e-9, value, error);
+    hf_required_bound_errors(&q, 0, &s, 1e-9, 0.5 * 1e-9, value, error);
     ck_assert(isnan(error[0]) && error[1] == 0 && isnan(error[2]) && isnan(error[3]) && isnan(error[5]));
     for (int e = 0; e < 3; e++) {
         net.work.law[e] = HF_LAW_FORCE_DENSITY;
@@ -387,9 +387,9 @@ START_TEST(what_has_no_bound_says_so)
     }
     net.work.target[1] = 10;
     hf_required_measure(&q, false, 0, &s, value, item);
-    hf_required_bound_errors(&q, 0, &s, 1e-7, value, error);
+    hf_required_bound_errors(&q, 0, &s, 1e-7, 0.5 * 1e-7, value, error);
     ck_assert(value[5] == 0 && error[5] == 1); /* an error of 2e-7 of its tension */
-    hf_required_bound_errors(&q, 0, &s, 1e-12, value, error);
+    hf_required_bound_errors(&q, 0, &s, 1e-12, 0.5 * 1e-12, value, error);
     ck_assert(error[5] == 0);
     net.scene.EA_N = NULL;
     hf_required_free(&q);
