@@ -17,6 +17,7 @@
 #include "linalg/dot.h"
 #include "net/symmetry.h"
 #include "search/refine_problem.h"
+#include "solve/certificate.h"
 #include "solve/limits.h"
 
 #include <math.h>
@@ -80,8 +81,9 @@
 #define ROUNDING_STEP 1e3 /* factor of a weight with which the merit is rounding */
 #define WEIGHTS_MAX 20
 #define OUT_OF_REACH 1e-3
-#define NOISE_MOST 1e-3  /* a weight is too large if rounding may change the merit by this part of the others */
-#define ROOM_INSIDE 1e-7 /* the part of the maximum below it at which psi is sought */
+#define NOISE_MOST 1e-3    /* a weight is too large if rounding may change the merit by this part of the others */
+#define ROOM_INSIDE 1e-7   /* the part of the maximum below it at which psi is sought */
+#define ROOM_CERTIFIED 0.1 /* a certified bound of the error of psi above this part of the maximum is not left free */
 /* The first weight is that of no smaller part of the largest coordinate, because rounding of positions would hide the
  * merit, or in J'J of dense steps the curvature of the other objectives. */
 #define LEAST_ROOM 1e-11
@@ -557,11 +559,29 @@ static double next_weight(hf_refine_problem *p)
     return p->weight_low * pow(p->weight_high / p->weight_low, fmax(0.1, fmin(part, 0.9)));
 }
 
+/* Returns true if the best design is closer to the maximum of psi than psi is certified, so that its verdict
+ * would be undecided. The maximum is then lower by twice the certified bound. This is done only once. */
+static bool leave_room(hf_refine_problem *p)
+{
+    hf_form_result end;
+    double most_m = p->psi_required_m;
+    if (p->psi_most_m < most_m) return false;
+    hf_status status = hf_evaluate(p->caller, p->best, p->w, hf_residuals_point(&p->residuals), &end);
+    if (status != HF_OK || end.psi_m > most_m) return false;
+    hf_certify(p->v.model, p->w, &end);
+    if (!(end.psi_m + end.psi_bound_m > most_m && end.psi_bound_m < ROOM_CERTIFIED * most_m)) return false;
+    p->psi_most_m = most_m - 2 * end.psi_bound_m;
+    p->weight_low = p->n_weight = 0;
+    if (p->psi_high_m > p->psi_most_m) p->weight_high = 0;
+    return p->psi_m > p->psi_most_m;
+}
+
 /* Continues a run that has ended with the next weight, unless the last one is final. Returns HF_OK or the status of the
  * failure. */
 static hf_status reweigh(hf_refine_problem *p, hf_refine_result *r)
 {
     double weight = next_weight(p);
+    if (weight == 0 && leave_room(p)) weight = next_weight(p);
     if (weight == 0) return HF_OK;
     hf_refine_weigh(p, weight);
     p->damping = p->is_sparse ? SPARSE_DAMPING_FIRST : DAMPING_FIRST;
@@ -786,6 +806,7 @@ typedef struct {
     hf_objectives objectives;
     double merit;       /* E; 0: nothing is replaced */
     double start_merit; /* of the caller's evaluator; NaN if the start is infeasible */
+    double psi_most_m;  /* the maximum at the end of the run */
 } relaxation;
 
 /* Sets the first weight of a problem that is relaxed. */
@@ -844,7 +865,7 @@ static hf_status tighten(const hf_evaluator *of, const relaxation *by, const dou
     if (r->stop == HF_REFINE_STALLED) return HF_OK;
     /* At the minimum, the merit falls by weight^2 psi/merit per metre of psi. */
     double weight = by->objectives.objective[by->objectives.n_objective - 1].settings.weight;
-    double room_m = of->objectives->constraints->psi_most_m - end.psi_m;
+    double room_m = by->psi_most_m - end.psi_m;
     double fall = weight * weight * end.psi_m / end.merit;
     double part = end.merit > OTHERS_ZERO * by->merit ? fall * room_m / end.merit : 0;
     r->predicted_gain = fmax(r->predicted_gain, fmin(1, part));
@@ -876,7 +897,7 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
         p.v = relaxed.v;
         p.caller = &relaxed.v;
         p.relaxed = &relaxed.objectives;
-        p.psi_most_m = evaluator->objectives->constraints->psi_most_m;
+        p.psi_most_m = p.psi_required_m = evaluator->objectives->constraints->psi_most_m;
     }
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
@@ -899,6 +920,7 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
         status = run_once(&p, max_iterations, design, result);
         hf_refine_destroy(&p);
     }
+    relaxed.psi_most_m = sparse.is_sparse && !sparse.needs_dense ? sparse.psi_most_m : p.psi_most_m;
     hf_refine_destroy(&sparse);
     if (status == HF_OK && relaxed.merit > 0) status = tighten(evaluator, &relaxed, design, w, result);
     return status;

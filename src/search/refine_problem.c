@@ -41,6 +41,7 @@
     X(SETTLED_STEPS, p->settled_steps, int)                                                                            \
     X(SETTLED_MERIT, p->settled_merit, double)                                                                         \
     X(BEST_OF_OTHERS, p->best_of_others, double)                                                                       \
+    X(PSI_MOST, p->psi_most_m, double)                                                                                 \
     X(PSI_WEIGHT, p->psi_weight, double)                                                                               \
     X(WEIGHT_LOW, p->weight_low, double)                                                                               \
     X(PSI_LOW, p->psi_low_m, double)                                                                                   \
@@ -55,7 +56,7 @@ enum {
     STATE_SCALARS(INDEX) STATE_SETTLED_OBJECTIVE,
     N_SCALAR = STATE_SETTLED_OBJECTIVE + HF_DESIGN_ROWS_MAX
 };
-#define FORMAT 5
+#define FORMAT 6
 
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
 {
@@ -354,7 +355,7 @@ static bool is_state(const hf_refine_problem *p, size_t n_state, const double *s
            s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_REFINE_SETTLED &&
            s[STATE_DAMPING] > 0 && s[STATE_GROWTH] > 0 && s[STATE_WAY] > 0 && s[STATE_SETTLED_STEPS] >= 0 &&
            s[STATE_SETTLED_STEPS] < INT_MAX && s[STATE_N_WEIGHT] >= 0 && s[STATE_N_WEIGHT] < INT_MAX &&
-           (!p->relaxed || s[STATE_PSI_WEIGHT] > 0);
+           (!p->relaxed || (s[STATE_PSI_WEIGHT] > 0 && s[STATE_PSI_MOST] > 0));
 }
 
 bool hf_refine_was_dense(size_t n_state, const double *s)
