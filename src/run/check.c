@@ -342,7 +342,6 @@ static hf_status time_optimisation(hf_check *c, const hf_evaluator *v)
     const hf_problem *p = &c->problem;
     const hf_optimiser_kind *kind = hf_optimiser_plan_of(&p->settings.optimize).kind;
     hf_optimiser o = {0};
-    hf_problem_limit_search(&c->problem);
     hf_status status = hf_optimiser_create(kind, &p->settings.optimize, &p->model, p->initial, &o);
     if (status == HF_OK && kind) status = time_search(c, v, &o.population);
     if (status == HF_OK && c->refines) status = time_refine(c, v, &o.population);
@@ -377,6 +376,7 @@ hf_status hf_check_load(const hf_check_request *q, hf_check *c, hf_messages *mes
     c->at_most_s = hf_clock_thread_cpu_s() - begin_s;
     const hf_evaluator evaluator = hf_problem_evaluator(p);
     find_stages(c, &evaluator);
+    hf_problem_limit_search(p);
     count_net(c);
     count_variables(c);
     count_nets(c);

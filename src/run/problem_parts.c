@@ -381,8 +381,9 @@ const char *hf_problem_no_slopes(const hf_problem *p)
 void hf_problem_limit_search(hf_problem *p)
 {
     hf_optimize_settings *o = &p->settings.optimize;
-    if (o->method != HF_OPTIMIZE_AUTO || o->n_front > 0 || !hf_refine_applies(&p->evaluator)) return;
-    int most = hf_refine_generations(&p->evaluator, o->population);
+    const hf_evaluator v = hf_problem_evaluator(p);
+    if (o->method != HF_OPTIMIZE_AUTO || o->n_front > 0 || !hf_refine_applies(&v)) return;
+    int most = hf_refine_generations(&v, o->population);
     if (o->generations > most) o->generations = most;
 }
 

@@ -33,6 +33,18 @@ START_TEST(check_tells_what_will_run)
 }
 END_TEST
 
+/* The method auto takes far fewer generations than the key allows, and the file holds only those. */
+START_TEST(check_counts_the_generations_of_auto)
+{
+    const char *path = keep(source_path("configs/chen2022.yaml"));
+    HIFDM(0, "check", path, "--set", "optimize.method=auto");
+    OUT("50 individuals, at most 1 generation, seed 2022\n");
+    OUT("result file   generations, at most                   33.1 kB\n");
+    HIFDM(0, "check", path, "--set", "optimize.method=ga");
+    OUT("result file   generations, at most                   13.2 MB\n");
+}
+END_TEST
+
 /* The duration behind these words of the output. */
 static double told_s(const char *words)
 {
@@ -340,6 +352,7 @@ Suite *suite_cli_check(void)
     tcase_add_test(tcase, check_tells_how_long_samples_take);
     tcase_add_test(tcase, how_far_the_truss_gives_way_is_told);
     tcase_add_test(tcase, check_tells_what_will_run);
+    tcase_add_test(tcase, check_counts_the_generations_of_auto);
     tcase_add_test(tcase, check_follows_the_size);
     tcase_add_test(tcase, check_of_an_ill_posed_case_says_so);
     tcase_add_test(tcase, check_of_many_variables_is_quick);
