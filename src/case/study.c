@@ -343,7 +343,7 @@ static hf_status check_replicates(const hf_study *s, hf_messages *messages)
         const hf_study_axis *axis = &s->axis[a];
         if (axis->is_replicate) replicate = axis;
         for (int k = 0; k < axis->n_value && !strcmp(axis->key.path, "optimize.method"); k++)
-            has_search &= strcmp(hf_study_axis_value(axis, k), hf_optimize_method_word[HF_OPTIMIZE_LM]) != 0;
+            has_search |= strcmp(hf_study_axis_value(axis, k), hf_optimize_method_word[HF_OPTIMIZE_LM]) != 0;
     }
     if (!replicate || has_search) return HF_OK;
     return hf_error(messages, HF_BAD_CASE,

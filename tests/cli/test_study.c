@@ -495,6 +495,22 @@ START_TEST(check_tells_the_faults_of_a_study)
 }
 END_TEST
 
+/* Only the replicates of lm are identical, so those of the other methods are worth running. */
+START_TEST(replicates_compare_methods)
+{
+    const char *path = file_with("s.yaml", "base: base.yaml\nsweep: {optimize.method: [ga, lm], replicates: 3}\n");
+    file_with("base.yaml",
+              NET "optimize: {population: 8, generations: 4, elites: 2, refine: false, range_N: 2, method: lm}\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    HIFDM(0, "show", temp("s.h5"), "--json");
+    EXPECT(out_as("s.json"), "--",
+           "[len(set(p['result']['psi_m'] for p in a['points'][k:k + 3])) for k in (0, 3)] == [2, 1]");
+    file_with("s.yaml", "base: base.yaml\nsweep: {form.pretension_N: [8, 9], replicates: 3}\n");
+    HIFDM(2, "sweep", path);
+    ERR("all replicates would be identical, because the method lm uses no random numbers");
+}
+END_TEST
+
 /* Any threads, shards and interruptions give the same merge, whose groups are recomputed from its points. */
 START_TEST(replicates_show_the_scatter_of_the_search)
 {
@@ -610,6 +626,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, check_counts_threads_that_have_a_point);
     tcase_add_test(tcase, check_tells_what_is_not_done);
     tcase_add_test(tcase, check_tells_the_faults_of_a_study);
+    tcase_add_test(tcase, replicates_compare_methods);
     tcase_add_test(tcase, replicates_show_the_scatter_of_the_search);
     tcase_add_test(tcase, a_search_among_the_results_is_not_called_refinement);
     tcase_add_test(tcase, show_of_what_is_no_result_says_what_to_do);

@@ -526,7 +526,6 @@ static const struct {
     {"  optimize.method: [lm]\n  replicates: 3\n",
      "study.yaml:4:3: sweep.replicates: all replicates would be identical, because the method lm uses no random "
      "numbers. Remove the key replicates, or use the method ga, ga+lm or auto"},
-    {"  replicates: 3\n  optimize.method: [ga, lm]\n", "study.yaml:3:3: sweep.replicates: all replicates would be"},
     {"  form.pretension_N: {from: 1, to: 2, n: 2000}\n  replicates: 501\n",
      "the study has 1002000 points, but the maximum is 1000000"},
     /* ends too far apart for a difference or a quotient, and too large for a whole number */
