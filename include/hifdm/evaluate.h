@@ -58,7 +58,8 @@ typedef struct {
     const hf_objectives *objectives; /* objectives that form the merit of a shape; NULL: the merit is psi_m */
     const double *initial;           /* [n_variable] initial design; used by design variables with link: scale */
     int n_thread; /* number of threads that compute the derivatives of one design; 0: the calling thread alone */
-    /* Levenberg-Marquardt: a design variable of a tension T sets the force density T/L* instead of the tension. */
+    /* Levenberg-Marquardt: a design variable of a tension T sets the force density T/L* instead of the tension, unless
+     * tensions are linked (links_tensions of the model). */
     bool by_density;
 } hf_evaluator;
 

@@ -97,6 +97,7 @@ typedef struct {
      * variables of a class change by the same step as the first one. */
     int n_leader;         /* number of classes, which is the number of independent design variables */
     int *variable_leader; /* [n_variable] first design variable of the class; without links, the variable itself */
+    bool links_tensions;  /* a class has tensions of cables that are not mirror images in any shape */
 
     /* A chain is a path of at least two cables of law length between two supports. A chain passes only through free
      * nodes that have no other cable of law length. The list of chains begins with the straight chains. The total

@@ -146,6 +146,7 @@ static void link_sets(const maker *q)
         m->variable[k].scales = s->link == HF_LINK_SCALE;
         if (s->link == HF_LINK_SET || s->link == HF_LINK_SCALE)
             m->variable_leader[k] = first + (k - first) % n_component;
+        m->links_tensions |= m->variable_leader[k] != k && s->vary == HF_VARY_TENSION;
         m->n_leader += m->variable_leader[k] == k;
     }
 }

@@ -76,14 +76,21 @@
 #define ROOM_LEFT 1e-6
 #define ROOM_LEFT_UNUSED 1e-5 /* the same if psi is below half of the maximum, which then has little effect */
 #define OTHERS_ZERO 1e-10     /* a part of the merit of the others at the start that counts as zero */
+#define OTHERS_ROUNDING 1e-14 /* their merit, in SI units, below which it is rounding */
 #define WEIGHT_STEP 10
 #define LOOSEN 0.7        /* factor of the first weight after a step inside the maximum [0.3 to 0.9] */
 #define ROUNDING_STEP 1e3 /* factor of a weight with which the merit is rounding */
 #define WEIGHTS_MAX 20
+/* With a weight below LOW_WEIGHT times one with which psi was above the maximum, psi cannot be below LOW_PSI of it. */
+#define LOW_WEIGHT 1.1
+#define LOW_PSI 0.9
 #define OUT_OF_REACH 1e-3
-#define NOISE_MOST 1e-3    /* a weight is too large if rounding may change the merit by this part of the others */
-#define ROOM_INSIDE 1e-7   /* the part of the maximum below it at which psi is sought */
-#define ROOM_CERTIFIED 0.1 /* a certified bound of the error of psi above this part of the maximum is not left free */
+#define NOISE_MOST 1e-3  /* a weight is too large if rounding may change the merit by this part of the others */
+#define ROOM_INSIDE 1e-7 /* the part of the maximum below it at which psi is sought */
+/* The maximum is lower by ROOM_CERTIFIED times the certified bound of the error of psi at the start, unless that is more
+ * than ROOM_MOST of the maximum. */
+#define ROOM_CERTIFIED 4
+#define ROOM_MOST 0.1
 /* The first weight is that of no smaller part of the largest coordinate, because rounding of positions would hide the
  * merit, or in J'J of dense steps the curvature of the other objectives. */
 #define LEAST_ROOM 1e-11
@@ -536,44 +543,34 @@ static bool is_settled(hf_refine_problem *p, double merit, bool is_kept)
     return p->settled_steps >= 2 * SETTLED_STEPS || (is_kept && predict(p, merit) < SETTLED_GAIN);
 }
 
+/* Returns true if rounding hardly changes the merit of the other objectives. */
+static bool is_exact(const hf_refine_problem *p)
+{
+    return p->noise < NOISE_MOST * p->others;
+}
+
 /* Returns the next weight of the objective that replaces a maximum of psi, or 0 if the last one is final. */
 static double next_weight(hf_refine_problem *p)
 {
     double most = p->psi_most_m, weight = p->psi_weight, ratio = p->psi_m / most, before = p->psi_low_m;
-    bool is_exact = p->noise < NOISE_MOST * p->others;
+    bool exact = is_exact(p);
     if (p->psi_m <= most) {
         if (p->others <= p->zero) return 0;
         double left = ratio < 0.5 ? ROOM_LEFT_UNUSED : ROOM_LEFT;
-        if (is_exact && weight * weight * p->psi_m * (most - p->psi_m) < left * p->others * p->others) return 0;
+        if (exact && weight * weight * p->psi_m * (most - p->psi_m) < left * p->others * p->others) return 0;
         p->weight_high = weight;
         p->psi_high_m = p->psi_m;
+        if (ratio < LOW_PSI && weight < LOW_WEIGHT * p->weight_low) p->weight_low = 0; /* its run was not at its end */
     } else {
-        if (is_exact && p->weight_low > 0 && p->weight_high == 0 && p->psi_m > (1 - OUT_OF_REACH) * before) return 0;
+        if (exact && p->weight_low > 0 && p->weight_high == 0 && p->psi_m > (1 - OUT_OF_REACH) * before) return 0;
         p->weight_low = weight;
         p->psi_low_m = p->psi_m;
     }
     if (++p->n_weight > WEIGHTS_MAX) return 0;
-    if (p->weight_high == 0) return weight * (is_exact ? fmax(2, fmin(ratio * ratio, WEIGHT_STEP)) : ROUNDING_STEP);
+    if (p->weight_high == 0) return weight * (exact ? fmax(2, fmin(ratio * ratio, WEIGHT_STEP)) : ROUNDING_STEP);
     if (p->weight_low == 0) return weight * fmin(sqrt(ratio), 0.5); /* psi grows by at most the square of that */
     double part = log((1 - ROOM_INSIDE) * most / p->psi_low_m) / log(p->psi_high_m / p->psi_low_m);
     return p->weight_low * pow(p->weight_high / p->weight_low, fmax(0.1, fmin(part, 0.9)));
-}
-
-/* Returns true if the best design is closer to the maximum of psi than psi is certified, so that its verdict
- * would be undecided. The maximum is then lower by twice the certified bound. This is done only once. */
-static bool leave_room(hf_refine_problem *p)
-{
-    hf_form_result end;
-    double most_m = p->psi_required_m;
-    if (p->psi_most_m < most_m) return false;
-    hf_status status = hf_evaluate(p->caller, p->best, p->w, hf_residuals_point(&p->residuals), &end);
-    if (status != HF_OK || end.psi_m > most_m) return false;
-    hf_certify(p->v.model, p->w, &end);
-    if (!(end.psi_m + end.psi_bound_m > most_m && end.psi_bound_m < ROOM_CERTIFIED * most_m)) return false;
-    p->psi_most_m = most_m - 2 * end.psi_bound_m;
-    p->weight_low = p->n_weight = 0;
-    if (p->psi_high_m > p->psi_most_m) p->weight_high = 0;
-    return p->psi_m > p->psi_most_m;
 }
 
 /* Continues a run that has ended with the next weight, unless the last one is final. Returns HF_OK or the status of the
@@ -581,7 +578,8 @@ static bool leave_room(hf_refine_problem *p)
 static hf_status reweigh(hf_refine_problem *p, hf_refine_result *r)
 {
     double weight = next_weight(p);
-    if (weight == 0 && leave_room(p)) weight = next_weight(p);
+    if (p->n_weight > WEIGHTS_MAX && is_exact(p)) r->stop = HF_REFINE_STALLED;
+    if (p->psi_m <= p->psi_most_m && p->others <= p->zero) r->stop = HF_REFINE_CONVERGED;
     if (weight == 0) return HF_OK;
     hf_refine_weigh(p, weight);
     p->damping = p->is_sparse ? SPARSE_DAMPING_FIRST : DAMPING_FIRST;
@@ -625,7 +623,7 @@ static hf_status accept(hf_refine_problem *p, double merit, double part, double 
     hf_refine_keep(p);
     r->merit = merit;
     learn_pressure(p);
-    loosen(p, promised_part, r);
+    if (r->stop == HF_REFINE_MAX_ITERATIONS) loosen(p, promised_part, r);
     if (part > 0 && isfinite(part))
         p->damping =
             fmax(DAMPING_LEAST, p->damping * fmax(p->is_sparse ? SPARSE_FALL : 0.1, 1 - share * share * share));
@@ -720,8 +718,9 @@ static void count_limits(const hf_refine_problem *p, const double *design, hf_re
 static bool is_not_worse(const hf_refine_problem *p, const hf_form_result *end, const hf_form_result *start)
 {
     if (!p->relaxed) return hf_refine_merit(p, end) <= hf_refine_merit(p, start);
-    if (start->psi_m > p->psi_most_m) return end->psi_m <= start->psi_m;
-    return end->psi_m <= p->psi_most_m && hf_refine_others(p, end) <= p->others_at_start;
+    double most_m = p->relaxed->constraints->psi_most_m;
+    if (start->psi_m > most_m) return end->psi_m <= start->psi_m;
+    return end->psi_m <= most_m && hf_refine_others(p, end) <= p->others_at_start;
 }
 
 /* Replaces `design` by the best design if the caller's evaluator finds that it keeps all limits and is not worse than
@@ -806,8 +805,14 @@ typedef struct {
     hf_objectives objectives;
     double merit;       /* E; 0: nothing is replaced */
     double start_merit; /* of the caller's evaluator; NaN if the start is infeasible */
-    double psi_most_m;  /* the maximum at the end of the run */
+    double psi_most_m;  /* the maximum, lower by what makes psi certain to keep it */
 } relaxation;
+
+/* Returns the merit of the others below which nothing is left to gain. */
+static double zero_of(const relaxation *by)
+{
+    return fmax(OTHERS_ZERO * by->merit, OTHERS_ROUNDING);
+}
 
 /* Sets the first weight of a problem that is relaxed. */
 static void weigh_first(const relaxation *by, hf_refine_problem *p)
@@ -815,8 +820,19 @@ static void weigh_first(const relaxation *by, hf_refine_problem *p)
     const hf_model *m = p->v.model;
     double largest_m = hf_max_magnitude(3 * (size_t)m->n_node, m->position_m);
     double least = (p->is_sparse ? LEAST_ROOM : LEAST_ROOM_DENSE) * largest_m;
-    p->zero = OTHERS_ZERO * by->merit;
+    p->zero = zero_of(by);
     if (p->relaxed) hf_refine_weigh(p, by->merit / fmax(p->psi_most_m, least));
+}
+
+/* Returns the maximum of psi that a run aims at from a start, whose shape is in the workspace. The verdict on a psi just
+ * below the required maximum would be undecided. A start that keeps the required one keeps this one, too. */
+static double certain_maximum_m(const hf_evaluator *of, hf_workspace *w, hf_form_result *start)
+{
+    double most_m = of->objectives->constraints->psi_most_m;
+    hf_certify(of->model, w, start);
+    double room_m = ROOM_CERTIFIED * start->psi_bound_m;
+    if (!(room_m < ROOM_MOST * most_m)) return most_m;
+    return fmax(most_m - room_m, fmin(start->psi_m, most_m));
 }
 
 /* Evaluates a design with its objectives, of which it makes and frees the scratch. */
@@ -841,8 +857,9 @@ static hf_status relax(const hf_evaluator *of, const double *design, hf_workspac
     to->v.objectives = g;
     *g = *of->objectives;
     g->replaces_psi = true;
-    if (g->constraints->n == 1) g->constraints = NULL;
-    double merit = hf_status_has_shape(start.status) ? hf_refine_norm(g, g->n_objective, &start) : 0;
+    bool has_shape = hf_status_has_shape(start.status);
+    double merit = has_shape ? hf_refine_norm(g, g->n_objective, &start) : 0;
+    if (has_shape) to->psi_most_m = certain_maximum_m(of, w, &start);
     to->merit = isfinite(merit) ? merit : 0;
     g->objective[g->n_objective++] =
         (hf_objective){.settings = {.figure = HF_FIGURE_PSI, .target = NAN, .weight = 1, .mass_kg_per_m = NAN},
@@ -867,7 +884,7 @@ static hf_status tighten(const hf_evaluator *of, const relaxation *by, const dou
     double weight = by->objectives.objective[by->objectives.n_objective - 1].settings.weight;
     double room_m = by->psi_most_m - end.psi_m;
     double fall = weight * weight * end.psi_m / end.merit;
-    double part = end.merit > OTHERS_ZERO * by->merit ? fall * room_m / end.merit : 0;
+    double part = end.merit > zero_of(by) ? fall * room_m / end.merit : 0;
     r->predicted_gain = fmax(r->predicted_gain, fmin(1, part));
     if (part > SETTLED_GAIN && r->stop != HF_REFINE_MAX_ITERATIONS) r->stop = HF_REFINE_STALLED;
     return HF_OK;
@@ -897,7 +914,7 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
         p.v = relaxed.v;
         p.caller = &relaxed.v;
         p.relaxed = &relaxed.objectives;
-        p.psi_most_m = p.psi_required_m = evaluator->objectives->constraints->psi_most_m;
+        p.psi_most_m = relaxed.psi_most_m;
     }
     p.v.by_density = true;
     p.v.boundary_ratio_cap = INFINITY;
@@ -920,7 +937,6 @@ hf_status hf_refine_run(const hf_evaluator *evaluator, const double *lower, cons
         status = run_once(&p, max_iterations, design, result);
         hf_refine_destroy(&p);
     }
-    relaxed.psi_most_m = sparse.is_sparse && !sparse.needs_dense ? sparse.psi_most_m : p.psi_most_m;
     hf_refine_destroy(&sparse);
     if (status == HF_OK && relaxed.merit > 0) status = tighten(evaluator, &relaxed, design, w, result);
     return status;

@@ -41,7 +41,6 @@
     X(SETTLED_STEPS, p->settled_steps, int)                                                                            \
     X(SETTLED_MERIT, p->settled_merit, double)                                                                         \
     X(BEST_OF_OTHERS, p->best_of_others, double)                                                                       \
-    X(PSI_MOST, p->psi_most_m, double)                                                                                 \
     X(PSI_WEIGHT, p->psi_weight, double)                                                                               \
     X(WEIGHT_LOW, p->weight_low, double)                                                                               \
     X(PSI_LOW, p->psi_low_m, double)                                                                                   \
@@ -56,11 +55,11 @@ enum {
     STATE_SCALARS(INDEX) STATE_SETTLED_OBJECTIVE,
     N_SCALAR = STATE_SETTLED_OBJECTIVE + HF_DESIGN_ROWS_MAX
 };
-#define FORMAT 6
+#define FORMAT 5
 
 bool hf_refine_is_tension(const hf_refine_problem *p, int k)
 {
-    return hf_evaluate_sets(p->caller, k) == HF_SETS_TENSION;
+    return hf_evaluate_sets(p->caller, k) != hf_evaluate_sets(&p->v, k);
 }
 
 /* Returns the magnitude of design variable k, which starts at `start`. A support starts at 0: its magnitude is the
@@ -226,8 +225,13 @@ void hf_refine_keep(hf_refine_problem *p)
         return;
     p->best_psi_m = p->psi_m;
     p->best_of_others = p->others;
-    for (int k = 0; k < m->n_variable; k++)
+    const double *initial = p->v.initial;
+    for (int k = 0; k < m->n_variable; k++) {
+        int leader = m->variable_leader[k];
         p->best[k] = hf_refine_is_tension(p, k) ? p->w->tension_N[m->variable_cable[k]] : p->design[k];
+        if (hf_refine_is_tension(p, k) && initial && leader != k) /* exactly, also on a truss that is not symmetric */
+            p->best[k] = initial[k] + (p->best[leader] - initial[leader]);
+    }
 }
 
 /* Returns the part of the merit that the tolerance of the form-finding leaves open. Forces out of balance by
@@ -355,7 +359,7 @@ static bool is_state(const hf_refine_problem *p, size_t n_state, const double *s
            s[STATE_EVALUATIONS] < INT_MAX && s[STATE_STOP] >= 0 && s[STATE_STOP] <= HF_REFINE_SETTLED &&
            s[STATE_DAMPING] > 0 && s[STATE_GROWTH] > 0 && s[STATE_WAY] > 0 && s[STATE_SETTLED_STEPS] >= 0 &&
            s[STATE_SETTLED_STEPS] < INT_MAX && s[STATE_N_WEIGHT] >= 0 && s[STATE_N_WEIGHT] < INT_MAX &&
-           (!p->relaxed || (s[STATE_PSI_WEIGHT] > 0 && s[STATE_PSI_MOST] > 0));
+           (!p->relaxed || s[STATE_PSI_WEIGHT] > 0);
 }
 
 bool hf_refine_was_dense(size_t n_state, const double *s)

@@ -54,9 +54,9 @@ typedef struct {
     bool needs_dense;      /* dense steps must continue: the cap is broken, or `saddle` leads no farther */
     /* The objectives, whose last one replaces a maximum of psi, and this maximum. NULL: none does. Its weight is found
      * by refinements: one below which psi exceeds the maximum and one above which it does not, and psi with each. A
-     * weight of 0 is not known. The maximum may be lower than the required one, so that psi is certified to keep it. */
+     * weight of 0 is not known. The maximum is lower than the required one, so that psi is certain to keep it. */
     hf_objectives *relaxed;
-    double psi_required_m, psi_most_m, psi_weight, weight_low, psi_low_m, weight_high, psi_high_m;
+    double psi_most_m, psi_weight, weight_low, psi_low_m, weight_high, psi_high_m;
     int n_weight;
     double zero;                      /* hf_refine_others below which nothing is left to gain */
     double psi_m, others;             /* psi and hf_refine_others of the design at `at` */

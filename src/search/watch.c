@@ -94,7 +94,7 @@ static void list(const hf_evaluator *v, const hf_sensitivity *s, const double *l
     for (int e = 0; e < m->n_cable; e++) {
         int variable = s->variable_of_cable[e];
         bool is_in_ratio = cap >= 0 && m->group[e] == HF_GROUP_BOUNDARY;
-        if (variable >= 0 && hf_evaluate_sets(v, variable) != HF_SETS_TENSION) variable = -1;
+        if (variable >= 0 && (m->links_tensions || hf_evaluate_sets(v, variable) != HF_SETS_TENSION)) variable = -1;
         if (variable < 0 && !is_in_ratio) continue;
         hf_watched item = no_item;
         item.cable = e;

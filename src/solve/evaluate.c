@@ -95,7 +95,7 @@ hf_variable_sets hf_evaluate_sets(const hf_evaluator *v, int k)
     hf_vary vary = hf_model_vary(v->model, k);
     if (vary == HF_VARY_PRETENSION && v->rule == HF_RULE_SEEDED) return HF_SETS_START;
     if (vary == HF_VARY_PRETENSION) vary = v->rule == HF_RULE_TENSION ? HF_VARY_TENSION : HF_VARY_FORCE_DENSITY;
-    if (vary == HF_VARY_TENSION) return v->by_density ? HF_SETS_DENSITY : HF_SETS_TENSION;
+    if (vary == HF_VARY_TENSION) return v->by_density && !v->model->links_tensions ? HF_SETS_DENSITY : HF_SETS_TENSION;
     if (vary == HF_VARY_FORCE_DENSITY) return HF_SETS_DENSITY;
     if (vary == HF_VARY_LENGTH) return HF_SETS_LENGTH;
     return vary == HF_VARY_UNSTRESSED_LENGTH ? HF_SETS_CUT : HF_SETS_SUPPORT;

@@ -285,6 +285,28 @@ START_TEST(objectives_use_all_of_a_maximum_of_psi)
 }
 END_TEST
 
+/* The refinement takes force densities for tensions, which are equal or in proportion in the shape of one design only.
+ * Linked tensions stay tensions. */
+START_TEST(linked_tensions_stay_linked)
+{
+    static const char *const link[] = {"set", "scale"};
+    const char *c = file_with(
+        "c.yaml",
+        keep(formatted("%soptimize:\n  method: lm\n  variables: [{set: inner, vary: tension, bounds: [4, 40], "
+                       "link: %s}, {set: boundary, vary: force_density, range: 10 %%}]\n"
+                       "requirements: [{figure: ratio, set: inner, at_most: 1.000001}]\n",
+                       CYLINDER, link[_i])));
+    const char *out = temp("r.h5"), *other = temp("o.h5");
+    HIFDM(0, "run", c, "-o", out);
+    OUT("verdict: pass");
+    HIFDM(0, "run", c, "-o", other, "--quiet", "--set", "optimize.method=ga+lm");
+    EXPECT(out, other, "--",
+           "all(np.ptp(f['refine/tension_N'][:][f['scene/cable/group'][:] == 0]) < 1e-7 for f in (a, b))",
+           "all(abs(f['refine'].attrs['psi_m'] - 4.19995e-3) < 1e-8 for f in (a, b))",
+           "b['search'].attrs['psi_m'] > 4.2e-3", "a['refine'].attrs['algorithm_stop'] == 0");
+}
+END_TEST
+
 /* The first weight of psi would make hundreds of short steps if it fell only at the end of a run. */
 START_TEST(a_maximum_of_psi_with_room_takes_few_steps)
 {
@@ -544,6 +566,7 @@ Suite *suite_cli_limits(void)
     tcase_add_test(tests, a_maximum_of_psi_below_the_tolerances_names_them);
     tcase_add_loop_test(tests, requirements_on_tensions_are_limits, 0, 6);
     tcase_add_loop_test(tests, objectives_use_all_of_a_maximum_of_psi, 0, 3);
+    tcase_add_loop_test(tests, linked_tensions_stay_linked, 0, 2);
     tcase_add_test(tests, a_maximum_of_psi_with_room_takes_few_steps);
     tcase_add_loop_test(tests, room_for_psi_is_never_in_the_way, 0, 10);
     tcase_add_test(tests, a_maximum_of_psi_and_tensions_are_held_together);

@@ -536,8 +536,8 @@ END_TEST
 START_TEST(the_result_is_judged)
 {
     const char *path = temp("a.h5"), *text = BUILT_SCENE
-                                     "optimize: {method: lm, variables: [{set: inner, vary: tension, bounds: [4, 40], "
-                                     "link: set}]%s}\n" ROWS "  - {figure: psi, at_most: 1}\n"
+                                     "optimize: {method: lm, variables: [{set: inner, vary: tension, bounds: [4, 40]}]"
+                                     "%s}\n" ROWS "  - {figure: psi, at_most: 1}\n"
                                      "  - {figure: tension, set: inner, at_most: 30}\n";
     HIFDM(0, "run", file_with("c.yaml", formatted(text, "")), "-o", path, "--quiet");
     EXPECT(path, "--", "near(a['requirements/value'][0], a['refine'].attrs['psi_m'], 1e-14)",
