@@ -359,7 +359,7 @@ bool hf_merged_is_margin(const hf_merged *m, int figure)
 static double rank_value(const hf_merged *m, int figure, int i)
 {
     double value = m->figure[figure].value.value[i];
-    if (hf_merged_is_margin(m, figure)) value = fabs(value) < MARGIN_SHOWN ? 0 : -value;
+    if (hf_merged_is_margin(m, figure)) value = -value;
     return isnan(value) ? (double)INFINITY : value;
 }
 
@@ -387,22 +387,31 @@ static double rounding_of(const hf_merged *m, const char *objective)
     return REACHED_RATIO * size;
 }
 
-/* Returns whether point i ranks before `best`, which is -1 for none. Differences of rounding do not count. */
-static bool is_better(const hf_merged *m, int i, int best)
+/* Returns the value of ranking figure k, without differences of rounding. */
+static double rounded_value(const hf_merged *m, int k, int i)
 {
-    int by_verdict = best < 0 ? -1 : compare_verdicts(m, i, best);
-    if (by_verdict) return by_verdict < 0;
-    for (int k = 0; k < m->leads.n; k++) {
-        double a = fmax(rank_value(m, m->leads.figure[k], i), m->leads.floor[k]),
-               b = fmax(rank_value(m, m->leads.figure[k], best), m->leads.floor[k]);
-        if (a != b && !(fabs(a - b) <= SAME_RATIO * fmax(fabs(a), fabs(b)) && isfinite(a - b))) return a < b;
+    double value = fmax(rank_value(m, m->leads.figure[k], i), m->leads.floor[k]);
+    if (hf_merged_is_margin(m, m->leads.figure[k]) && fabs(value) < MARGIN_SHOWN) return 0;
+    if (value == 0 || !isfinite(value)) return value;
+    double unit = SAME_RATIO * pow(10, floor(log10(fabs(value))));
+    return unit * round(value / unit);
+}
+
+/* Compares two points by their verdicts and then by the ranking figures: negative if i ranks first. */
+static int compare(const hf_merged *m, int i, int j)
+{
+    int order = compare_verdicts(m, i, j);
+    for (int k = 0; k < m->leads.n && order == 0; k++) {
+        double a = rounded_value(m, k, i), b = rounded_value(m, k, j);
+        order = (a > b) - (a < b);
     }
-    return false;
+    return order;
 }
 
 bool hf_merged_ranks_before(const hf_merged *m, int i, int j)
 {
-    return is_better(m, i, j) || (i < j && !is_better(m, j, i));
+    int order = compare(m, i, j);
+    return order ? order < 0 : i < j;
 }
 
 /* Chooses the figures that rank points of equal verdicts. The smallest relative margin comes first, then the objective
@@ -432,8 +441,20 @@ static void choose_leads(hf_merged *m)
         try_lead(m, m->main, error[k]);
 }
 
+/* Returns whether ranking figure k does not tell the best point from others: its value is rounding, or all points with
+ * its verdicts have its margin. */
+static bool is_indifferent(const hf_merged *m, int k)
+{
+    bool is_margin = hf_merged_is_margin(m, m->leads.figure[k]);
+    double best = rounded_value(m, k, m->best);
+    for (int i = 0; i < m->n && is_margin; i++)
+        if (hf_merged_is_done(m, i) && compare_verdicts(m, i, m->best) == 0 && rounded_value(m, k, i) != best)
+            return false;
+    return is_margin || best <= m->leads.floor[k];
+}
+
 /* Chooses the ranking figure and the best point. Where nothing is required, the best point needs a value of that
- * figure. Where the best point has none of the first figure but rounding, the second one ranks. */
+ * figure. */
 static void choose_best(hf_merged *m)
 {
     choose_leads(m);
@@ -444,11 +465,10 @@ static void choose_best(hf_merged *m)
         varies = compare_verdicts(m, 0, i) != 0;
     for (int i = 0; i < m->n && varies; i++)
         if (hf_merged_is_done(m, i) && (is_judged || isfinite(m->figure[m->lead].value.value[i])) &&
-            is_better(m, i, m->best))
+            (m->best < 0 || compare(m, i, m->best) < 0))
             m->best = i;
-    if (m->best < 0 || m->leads.n < 2) return;
-    double value = rank_value(m, m->lead, m->best);
-    if (hf_merged_is_margin(m, m->lead) ? value == 0 : value <= m->leads.floor[0]) m->lead = m->leads.figure[1];
+    for (int k = 1; m->best >= 0 && k < m->leads.n && is_indifferent(m, k - 1); k++)
+        m->lead = m->leads.figure[k];
 }
 
 /* ---- columns of the requirements ---- */

@@ -86,8 +86,8 @@ typedef struct {
         int figure[HF_MERGED_LEADS_MAX], n, most;
         double floor[HF_MERGED_LEADS_MAX];
     } leads;
-    /* The first of them that tells the best point from others, and the best point; -1 when nothing varies. The best
-     * point has the minimum of this figure or, of HF_MERGED_MARGIN, its maximum. */
+    /* The first of them in which points with the verdicts of the best one differ, and the best point; -1 when nothing
+     * varies. Among these points, the best one has the minimum of this figure or, of HF_MERGED_MARGIN, its maximum. */
     int lead, best;
     int replicate;          /* the axis of the replicates; -1: none */
     int n_group;            /* 0: the study has no replicates, or nothing varies */

@@ -495,6 +495,24 @@ START_TEST(check_tells_the_faults_of_a_study)
 }
 END_TEST
 
+/* Values that differ by less than rounding from the next one, but not from the one after that, still have an order. */
+START_TEST(the_best_of_many_points_are_different)
+{
+    const char *path = file_with("s.yaml", "scene: {paraboloid: {aperture_m: 4, focal_length_m: 3, rings: 2}}\n"
+                                           "sweep: {form.pretension_N: {from: 5, to: 9, n: 70}}\n");
+    sweep_and_merge(path, temp("s.d"), temp("s.h5"));
+    SHELL(0,
+          "\"$1\" -c 'import h5py, sys\nwith h5py.File(sys.argv[1], \"r+\") as f:\n    f[\"points/form/psi_m\"][:] = "
+          "[1 - 8e-7 * min(k % 6, 3) + k // 6 for k in range(70)]' \"$2\"",
+          python_program(), temp("s.h5"));
+    HIFDM(0, "show", temp("s.h5"));
+    EXPECT(out_as("s.txt"), "--",
+           "len(set(a.decode().splitlines()) - {''}) == len([l for l in a.decode().splitlines() "
+           "if l])",
+           "'32 best' in a.decode()");
+}
+END_TEST
+
 /* Only the replicates of lm are identical, so those of the other methods are worth running. */
 START_TEST(replicates_compare_methods)
 {
@@ -626,6 +644,7 @@ Suite *suite_cli_study(void)
     tcase_add_test(tcase, check_counts_threads_that_have_a_point);
     tcase_add_test(tcase, check_tells_what_is_not_done);
     tcase_add_test(tcase, check_tells_the_faults_of_a_study);
+    tcase_add_test(tcase, the_best_of_many_points_are_different);
     tcase_add_test(tcase, replicates_compare_methods);
     tcase_add_test(tcase, replicates_show_the_scatter_of_the_search);
     tcase_add_test(tcase, a_search_among_the_results_is_not_called_refinement);
