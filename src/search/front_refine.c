@@ -34,7 +34,7 @@
 #define END_GIVES 1e-6
 #define END_GAINS 0.05
 #define AGREE 1e-5    /* a design this near (in parts of the ranges) to the minimum of every objective is best in all */
-#define ENDS_MAX 12   /* maximum number of designs found before the first one between the ends */
+#define ENDS_MAX 14   /* maximum number of designs found before the first one between the ends */
 #define NO_RANGE 1e-9 /* a difference below this part of an objective counts as none */
 #define LONG_GAP 0.5  /* gaps above this part of the longest one are halved at once, with any number of threads */
 #define NO_GAP 1e-9   /* in a gap below this part of the range of the limited objective, there is no room for a limit */
@@ -73,6 +73,8 @@ typedef struct {
 
 typedef struct {
     const hf_front_refine *t;
+    hf_evaluator by_limits; /* evaluator of `t`, in which limits on the objective psi replace a maximum of psi */
+    hf_objectives objectives;
     size_t n_variable;
     int n_objective, role[HF_FRONT_OBJECTIVES_MAX]; /* the objectives that are MAIN, OTHER and THIRD */
     double range[HF_FRONT_OBJECTIVES_MAX];          /* range of each objective between the ends */
@@ -241,7 +243,7 @@ static hf_status refine(const search *s, const job *j, double *design, room *own
     hf_form_result result;
     const hf_refine_watcher watcher = {.after = tell_step, .context = t->watcher};
     *point = (hf_front_point){.objective = {NAN, NAN, NAN}, .multiplier = {NAN, NAN, NAN}};
-    hf_status status = hf_refine_run(t->evaluator, t->lower, t->upper, t->max_iterations, &limits,
+    hf_status status = hf_refine_run(&s->by_limits, t->lower, t->upper, t->max_iterations, &limits,
                                      t->watcher ? &watcher : NULL, design, &own->w, &r);
     if (status == HF_OK) status = hf_evaluate(t->evaluator, design, &own->w, &own->point, &result);
     if (t->stop && *t->stop) return HF_INTERRUPTED;
@@ -330,6 +332,13 @@ static hf_status run(search *s)
     return HF_OK;
 }
 
+/* Limits objective k of a job, psi to no more than the requirements allow. */
+static void limit(const search *s, job *j, int k, double most)
+{
+    bool is_required = s->objectives.replaces_psi && s->objectives.objective[k].settings.figure == HF_FIGURE_PSI;
+    j->most[k] = is_required ? fmin(most, s->objectives.constraints->psi_most_m) : most;
+}
+
 /* Adds a job that minimises the objective with this role under a limit on THIRD, from the designs `first` and
  * `second`. */
 static job *add(search *s, int role, double third_most, const double *first, const double *second)
@@ -338,8 +347,8 @@ static job *add(search *s, int role, double third_most, const double *first, con
     j->least = s->role[role];
     j->met = -1;
     for (int k = 0; k < s->n_objective; k++)
-        j->most[k] = INFINITY;
-    if (s->n_objective > 2) j->most[s->role[THIRD]] = third_most;
+        limit(s, j, k, INFINITY);
+    if (s->n_objective > 2) limit(s, j, s->role[THIRD], third_most);
     j->from[0] = first;
     j->from[1] = second;
     return j;
@@ -363,7 +372,7 @@ static bool is_met(const search *s, const job *least, int role)
 static job *begin_beside(search *s, int role, double third_most, const job *end, int of)
 {
     job *j = add(s, role, third_most, end->design, NULL);
-    j->most[s->role[of]] = value_of(s, end, of) + END_GIVES * s->range[s->role[of]];
+    limit(s, j, s->role[of], value_of(s, end, of) + END_GIVES * s->range[s->role[of]]);
     if ((of != THIRD && isfinite(third_most)) || !is_met(s, end, of)) return j;
     j->met = s->role[of];
     j->from[1] = j->from[0];
@@ -496,6 +505,12 @@ static hf_status find_alone(search *s, job *alone[])
     for (int r = 0; r < n; r++)
         alone[r] = add(s, r, INFINITY, start[r], start[(r + 1) % n]);
     HF_TRY(run(s));
+    int found = n - 1; /* an end from which those begin again that have found no design */
+    while (found > 0 && alone[found]->found.status != HF_OK)
+        found--;
+    for (int r = 0; r < n && alone[found]->found.status == HF_OK; r++)
+        if (alone[r]->found.status != HF_OK) alone[r] = add(s, r, INFINITY, alone[found]->design, NULL);
+    HF_TRY(run(s));
     for (int k = 0; k < n; k++)
         for (int r = 0; r < n; r++) {
             if (s->role[r] != k || alone[r]->found.status == HF_OK) continue;
@@ -513,7 +528,7 @@ static hf_status meet_all(search *s, job *const alone[])
     job *j = add(s, MAIN, INFINITY, alone[MAIN]->design, NULL);
     j->met = j->least;
     for (int r = OTHER; r < s->n_objective; r++)
-        j->most[s->role[r]] = value_of(s, alone[r], r) + END_GIVES * s->range[s->role[r]];
+        limit(s, j, s->role[r], value_of(s, alone[r], r) + END_GIVES * s->range[s->role[r]]);
     return run(s);
 }
 
@@ -770,8 +785,14 @@ hf_status hf_front_refine_find(const hf_front_refine *task, hf_front *front, int
     t.evaluator = &alone;
     *front = (hf_front){.minimised = -1, .knee = -1};
     *failed_end = -1;
-    s.n_objective = t.evaluator->objectives->n_objective;
-    s.n_job = s.n_objective > 2 ? 2 * t.n_point + 8 : t.n_point + 4;
+    s.objectives = *alone.objectives;
+    s.n_objective = s.objectives.n_objective;
+    for (int k = 0; k < s.n_objective && s.objectives.constraints; k++)
+        s.objectives.replaces_psi |=
+            s.objectives.objective[k].settings.figure == HF_FIGURE_PSI && s.objectives.constraints->psi_most_m > 0;
+    s.by_limits = alone;
+    s.by_limits.objectives = &s.objectives;
+    s.n_job = s.n_objective > 2 ? 2 * t.n_point + 10 : t.n_point + 5;
     choose_roles(t.evaluator->objectives, s.role);
     HF_TRY(allocate(&s, &block));
     hf_status status = find_ends(&s);
