@@ -280,15 +280,10 @@ static void print_json_adjustments(const job *from, hf_json *j)
         const hf_adjust_turnbuckle *turned = &a->turnbuckle[k];
         hf_json_open_row(j);
         hf_json_text(j, "cable", from->built.scene.cable_id[turned->cable]);
-        hf_json_integer(j, "steps", turned->steps);
-        hf_json_number(j, "turnbuckle_m", turned->turnbuckle_m);
-        hf_json_number(j, "tension_before_N", turned->before_N);
-        hf_json_number(j, "tension_after_N", turned->after_N);
-        hf_json_number(j, "predicted_m", turned->figure_m);
-        hf_json_number(j, "expected_m", turned->expected_m);
-        hf_json_number(j, "gain_m", turned->gain_m);
-        hf_json_number(j, "gain_sigma_m", turned->gain_sigma_m);
-        hf_json_integer(j, "slack", turned->n_slack);
+        HF_JSON_NUMBERS(j, {"steps", turned->steps}, {"turnbuckle_m", turned->turnbuckle_m},
+                        {"tension_before_N", turned->before_N}, {"tension_after_N", turned->after_N},
+                        {"predicted_m", turned->figure_m}, {"expected_m", turned->expected_m},
+                        {"gain_m", turned->gain_m}, {"gain_sigma_m", turned->gain_sigma_m}, {"slack", turned->n_slack});
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -296,9 +291,9 @@ static void print_json_adjustments(const job *from, hf_json *j)
     for (int k = 0; k < from->n_out; k++) {
         hf_json_open_row(j);
         hf_json_text(j, "cable", from->built.scene.cable_id[from->out[k]]);
-        hf_json_number(j, "error_m", from->estimate.cut_m[from->out[k]]);
-        hf_json_number(j, "sigmas", fabs(hf_adjust_case_sigmas(from, from->out[k])));
-        hf_json_number(j, "by_positions_m", from->by_places_m[k]);
+        HF_JSON_NUMBERS(j, {"error_m", from->estimate.cut_m[from->out[k]]},
+                        {"sigmas", fabs(hf_adjust_case_sigmas(from, from->out[k]))},
+                        {"by_positions_m", from->by_places_m[k]});
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -321,10 +316,8 @@ static void print_json_instead(const job *from, hf_json *j)
         hf_json_open_row(j);
         hf_json_text(j, "figure", hf_adjust_figure_word[other->figure]);
         hf_json_text(j, "aim", aim_word(other->figure, other->aim));
-        hf_json_number(j, "before_m", other->before_m);
-        hf_json_number(j, "after_m", other->after_m);
-        hf_json_integer(j, "adjustment_count", other->n_turnbuckle);
-        hf_json_integer(j, "at_range", other->n_at_range);
+        HF_JSON_NUMBERS(j, {"before_m", other->before_m}, {"after_m", other->after_m},
+                        {"adjustment_count", other->n_turnbuckle}, {"at_range", other->n_at_range});
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -337,10 +330,8 @@ static void print_json_predictions(const job *from, hf_json *j)
         const hf_adjust_case_prediction *p = &from->prediction[k];
         hf_json_open_row(j);
         hf_json_text(j, "load_case", p->load_case);
-        hf_json_number(j, "estimated_m", p->estimated_m);
-        hf_json_number(j, "adjusted_m", p->adjusted_m);
-        hf_json_number(j, "tension_min_N", p->tension_min_N);
-        hf_json_integer(j, "slack", p->n_slack);
+        HF_JSON_NUMBERS(j, {"estimated_m", p->estimated_m}, {"adjusted_m", p->adjusted_m},
+                        {"tension_min_N", p->tension_min_N}, {"slack", p->n_slack});
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -375,27 +366,18 @@ static void print_json_findings(const job *from, hf_json *j)
     hf_json_integer(j, "measured_nodes", from->measured.n_node);
     hf_json_number(j, "chi_square", hf_adjust_case_chi_square(from));
     hf_json_bool(j, "fits", hf_adjust_case_fits(from));
-    hf_json_integer(j, "cables", from->task.n_cable);
-    hf_json_number(j, "nominal_m", a->nominal_m);
-    hf_json_number(j, "measured_m", from->measured_m);
-    hf_json_number(j, "estimated_m", a->estimated_m);
-    hf_json_number(j, "adjusted_m", a->adjusted_m);
-    hf_json_number(j, "best_m", a->best_m);
+    HF_JSON_NUMBERS(j, {"cables", from->task.n_cable}, {"nominal_m", a->nominal_m}, {"measured_m", from->measured_m},
+                    {"estimated_m", a->estimated_m}, {"adjusted_m", a->adjusted_m}, {"best_m", a->best_m});
     hf_json_line(j, " ");
-    hf_json_number(j, "estimated_expected_m", a->doubt_m[0]);
-    hf_json_number(j, "estimated_sigma_m", a->spread_m[0]);
-    hf_json_number(j, "adjusted_expected_m", a->doubt_m[1]);
-    hf_json_number(j, "adjusted_sigma_m", a->spread_m[1]);
+    HF_JSON_NUMBERS(j, {"estimated_expected_m", a->doubt_m[0]}, {"estimated_sigma_m", a->spread_m[0]},
+                    {"adjusted_expected_m", a->doubt_m[1]}, {"adjusted_sigma_m", a->spread_m[1]});
     hf_json_line(j, " ");
     hf_json_text(j, "end", end_word[a->end]);
     hf_json_bool(j, "held_taut", a->is_held_taut);
     hf_json_integer(j, "maybe_slack", a->n_maybe_slack);
     hf_json_bool(j, "supports_estimated", from->problem.settings.tolerance.sigma_support_m > 0);
-    hf_json_number(j, "design_psi_m", from->design_psi_m);
-    hf_json_number(j, "error_psi_m", from->error_psi_m);
-    hf_json_integer(j, "at_range", from->n_at_range);
-    hf_json_integer(j, "estimate_steps", from->estimate.n_step);
-    hf_json_integer(j, "rounds", a->n_round);
+    HF_JSON_NUMBERS(j, {"design_psi_m", from->design_psi_m}, {"error_psi_m", from->error_psi_m},
+                    {"at_range", from->n_at_range}, {"estimate_steps", from->estimate.n_step}, {"rounds", a->n_round});
     hf_json_bool(j, "settled", from->estimate.is_settled && a->is_settled);
     print_json_adjustments(from, j);
     print_json_instead(from, j);

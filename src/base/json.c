@@ -93,6 +93,12 @@ void hf_json_number(hf_json *j, const char *key, double value)
     hf_json_value(value, 17, j->file);
 }
 
+void hf_json_numbers(hf_json *j, const hf_json_pair *pair)
+{
+    for (; pair->key; pair++)
+        hf_json_number(j, pair->key, pair->value);
+}
+
 void hf_json_integer(hf_json *j, const char *key, int64_t value)
 {
     begin_item(j, key);

@@ -13,6 +13,11 @@ typedef struct {
     const char *line; /* indentation of a new line before the next item; NULL: no new line */
 } hf_json;
 
+typedef struct {
+    const char *key;
+    double value;
+} hf_json_pair;
+
 /* Begin and end an object or a list. `key` is NULL for an item of a list and for the outermost object. `bracket` is '{'
  * or '[' to open, '}' or ']' to close. */
 void hf_json_open(hf_json *json, const char *key, char bracket);
@@ -32,6 +37,10 @@ void hf_json_text(hf_json *json, const char *key, const char *text);
 /* Writes 17 significant digits. NaN becomes null. Infinite values become the texts "Infinity" and "-Infinity", which
  * float() in Python and Number() in JavaScript can read. */
 void hf_json_number(hf_json *json, const char *key, double value);
+/* Writes numbers by hf_json_number: HF_JSON_NUMBERS(json, {key, value}, {key, value}). Whole numbers up to 2^53 are
+ * written as by hf_json_integer. */
+#define HF_JSON_NUMBERS(json, ...) hf_json_numbers(json, (const hf_json_pair[]){__VA_ARGS__, {NULL, 0}})
+void hf_json_numbers(hf_json *json, const hf_json_pair *pair);
 void hf_json_integer(hf_json *json, const char *key, int64_t value);
 void hf_json_unsigned(hf_json *json, const char *key, uint64_t value);
 void hf_json_bool(hf_json *json, const char *key, bool value);

@@ -340,14 +340,10 @@ static void write_cut(const hf_pattern_table *t, int k, const hf_cut_figures *c,
     int stride = stride_of(t), i_cut = k % t->n_cut;
     double cross_dBi = highest(t->cross_dBi + (size_t)k * (size_t)t->n_theta, t->n_theta);
     hf_json_open(&j, NULL, '{');
-    hf_json_number(&j, "frequency_Hz", t->frequency_Hz[k / t->n_cut]);
-    hf_json_number(&j, "phi_deg", t->phi_deg[i_cut]);
-    hf_json_number(&j, "gain_dBi", c->gain_dBi);
-    hf_json_number(&j, "beam_deg", c->beam_deg);
-    hf_json_number(&j, "half_power_width_deg", c->half_power_width_deg);
-    hf_json_number(&j, "first_sidelobe_dB", c->first_sidelobe_dB);
-    hf_json_number(&j, "highest_sidelobe_dB", c->highest_sidelobe_dB);
-    hf_json_number(&j, "cross_dB", cross_dBi - c->gain_dBi);
+    HF_JSON_NUMBERS(&j, {"frequency_Hz", t->frequency_Hz[k / t->n_cut]}, {"phi_deg", t->phi_deg[i_cut]},
+                    {"gain_dBi", c->gain_dBi}, {"beam_deg", c->beam_deg},
+                    {"half_power_width_deg", c->half_power_width_deg}, {"first_sidelobe_dB", c->first_sidelobe_dB},
+                    {"highest_sidelobe_dB", c->highest_sidelobe_dB}, {"cross_dB", cross_dBi - c->gain_dBi});
     fputs(",\"co_dBi\":[", f);
     for (int i = 0; i < t->n_theta; i += stride) {
         if (i) fputc(',', f);
@@ -366,9 +362,7 @@ static void write_pattern(const char *stage, const hf_pattern_summary *s, const 
     hf_json_open(&j, NULL, '{');
     hf_json_text(&j, "stage", stage);
     hf_json_text(&j, "feed", hf_feed_word[s->feed.kind]);
-    hf_json_number(&j, "cos_power", s->feed.cos_power);
-    hf_json_integer(&j, "angles", t->n_theta);
-    hf_json_integer(&j, "stride", stride);
+    HF_JSON_NUMBERS(&j, {"cos_power", s->feed.cos_power}, {"angles", t->n_theta}, {"stride", stride});
     fputs(",\"theta_deg\":[", f);
     for (int i = 0; i < t->n_theta; i += stride) {
         int last = i + stride < t->n_theta ? i + stride - 1 : t->n_theta - 1;

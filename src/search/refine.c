@@ -87,8 +87,8 @@
 #define OUT_OF_REACH 1e-3
 #define NOISE_MOST 1e-3  /* a weight is too large if rounding may change the merit by this part of the others */
 #define ROOM_INSIDE 1e-7 /* the part of the maximum below it at which psi is sought */
-/* The maximum is lower by ROOM_CERTIFIED times the certified bound of the error of psi at the start, unless that is more
- * than ROOM_MOST of the maximum. */
+/* The maximum is lower by ROOM_CERTIFIED times the certified bound of the error of psi at the start, unless that is
+ * more than ROOM_MOST of the maximum. */
 #define ROOM_CERTIFIED 4
 #define ROOM_MOST 0.1
 /* The first weight is that of no smaller part of the largest coordinate, because rounding of positions would hide the
@@ -824,8 +824,8 @@ static void weigh_first(const relaxation *by, hf_refine_problem *p)
     if (p->relaxed) hf_refine_weigh(p, by->merit / fmax(p->psi_most_m, least));
 }
 
-/* Returns the maximum of psi that a run aims at from a start, whose shape is in the workspace. The verdict on a psi just
- * below the required maximum would be undecided. A start that keeps the required one keeps this one, too. */
+/* Returns the maximum of psi that a run aims at from a start, whose shape is in the workspace. The verdict on a psi
+ * just below the required maximum would be undecided. A start that keeps the required one keeps this one, too. */
 static double certain_maximum_m(const hf_evaluator *of, hf_workspace *w, hf_form_result *start)
 {
     double most_m = of->objectives->constraints->psi_most_m;

@@ -74,13 +74,10 @@ static void write_pattern(const hf_pattern_summary *s, hf_json *j)
     for (int k = 0; k < s->n_frequency * s->n_cut; k++) {
         const hf_cut_figures *f = &s->figure[k];
         hf_json_open_line(j, "   ", NULL, '{');
-        hf_json_number(j, "frequency_Hz", s->frequency_Hz[k / s->n_cut]);
-        hf_json_number(j, "phi_deg", s->phi_deg[k % s->n_cut]);
-        hf_json_number(j, "gain_dBi", f->gain_dBi);
-        hf_json_number(j, "beam_deg", f->beam_deg);
-        hf_json_number(j, "half_power_width_deg", f->half_power_width_deg);
-        hf_json_number(j, "first_sidelobe_dB", f->first_sidelobe_dB);
-        hf_json_number(j, "highest_sidelobe_dB", f->highest_sidelobe_dB);
+        HF_JSON_NUMBERS(j, {"frequency_Hz", s->frequency_Hz[k / s->n_cut]}, {"phi_deg", s->phi_deg[k % s->n_cut]},
+                        {"gain_dBi", f->gain_dBi}, {"beam_deg", f->beam_deg},
+                        {"half_power_width_deg", f->half_power_width_deg}, {"first_sidelobe_dB", f->first_sidelobe_dB},
+                        {"highest_sidelobe_dB", f->highest_sidelobe_dB});
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -93,9 +90,7 @@ static void write_sets(const hf_set_tensions *s, hf_json *j)
     hf_json_open_line(j, "  ", "sets", '{');
     for (int k = 0; k < s->n; k++) {
         hf_json_open(j, s->name[k], '{');
-        hf_json_number(j, "min_N", s->min_N[k]);
-        hf_json_number(j, "max_N", s->max_N[k]);
-        hf_json_number(j, "tension_ratio", s->ratio[k]);
+        HF_JSON_NUMBERS(j, {"min_N", s->min_N[k]}, {"max_N", s->max_N[k]}, {"tension_ratio", s->ratio[k]});
         hf_json_close(j, '}');
     }
     hf_json_close(j, '}');
@@ -110,9 +105,7 @@ static void write_held(const hf_held_limits *h, hf_json *j)
         hf_json_open(j, NULL, '{');
         hf_json_integer(j, "row", h->row[i]);
         hf_json_text(j, "name", h->name[i]);
-        hf_json_number(j, "value", h->value[i]);
-        hf_json_number(j, "bound", h->bound[i]);
-        hf_json_integer(j, "count", h->count[i]);
+        HF_JSON_NUMBERS(j, {"value", h->value[i]}, {"bound", h->bound[i]}, {"count", h->count[i]});
         hf_json_close(j, '}');
     }
     hf_json_close(j, ']');
@@ -189,16 +182,12 @@ static void write_front(const hf_summary *s, hf_json *j)
 {
     const hf_front_table *t = s->front;
     hf_json_open_line(j, " ", "front", '{');
-    hf_json_integer(j, "n_point", t->n_point);
-    hf_json_integer(j, "n_listed", t->n_row);
-    hf_json_integer(j, "n_dominated", t->n_dominated);
-    hf_json_integer(j, "n_failed", t->n_failed);
+    HF_JSON_NUMBERS(j, {"n_point", t->n_point}, {"n_listed", t->n_row}, {"n_dominated", t->n_dominated},
+                    {"n_failed", t->n_failed});
     if (t->minimised >= 0) hf_json_integer(j, "n_not_converged", t->n_unconverged);
     if (hf_front_is_judged(t)) {
-        hf_json_integer(j, "n_pass", t->n_verdict[HF_VERDICT_PASS]);
-        hf_json_integer(j, "n_fail", t->n_verdict[HF_VERDICT_FAIL]);
-        hf_json_integer(j, "n_undecided", t->n_verdict[HF_VERDICT_UNDECIDED]);
-        hf_json_integer(j, "first", hf_front_suggested(t));
+        HF_JSON_NUMBERS(j, {"n_pass", t->n_verdict[HF_VERDICT_PASS]}, {"n_fail", t->n_verdict[HF_VERDICT_FAIL]},
+                        {"n_undecided", t->n_verdict[HF_VERDICT_UNDECIDED]}, {"first", hf_front_suggested(t)});
     }
     if (t->minimised >= 0) hf_json_text(j, "minimised", s->objectives.name[t->minimised]);
     if (t->knee >= 0) hf_json_integer(j, "knee", t->knee);
@@ -218,10 +207,10 @@ static void write_front(const hf_summary *s, hf_json *j)
         if (t->minimised >= 0) hf_json_bool(j, "converged", p->is_converged);
         if (p->judgement.n_required > 0) {
             hf_json_text(j, "verdict", hf_verdict_word[hf_judgement_verdict(&p->judgement)]);
-            hf_json_integer(j, "requirements", p->judgement.n_required);
-            hf_json_integer(j, "requirements_failed", p->judgement.n_failed);
-            hf_json_integer(j, "requirements_undecided", p->judgement.n_undecided);
-            hf_json_number(j, "relative_margin_min", p->judgement.relative_margin_min);
+            HF_JSON_NUMBERS(j, {"requirements", p->judgement.n_required},
+                            {"requirements_failed", p->judgement.n_failed},
+                            {"requirements_undecided", p->judgement.n_undecided},
+                            {"relative_margin_min", p->judgement.relative_margin_min});
         }
         hf_json_close(j, '}');
     }
@@ -264,12 +253,8 @@ static hf_tolerance_figures known_figures(const hf_tolerance_figures *f, const c
 static void write_figures(const hf_tolerance_figures *f, const char *measure, hf_json *j)
 {
     hf_json_open_line(j, "  ", measure, '{');
-    hf_json_number(j, "mean", f->mean);
-    hf_json_number(j, "mean_low", f->mean_low);
-    hf_json_number(j, "mean_high", f->mean_high);
-    hf_json_number(j, "deviation", f->deviation);
-    hf_json_number(j, "min", f->min);
-    hf_json_number(j, "max", f->max);
+    HF_JSON_NUMBERS(j, {"mean", f->mean}, {"mean_low", f->mean_low}, {"mean_high", f->mean_high},
+                    {"deviation", f->deviation}, {"min", f->min}, {"max", f->max});
     hf_json_list(j, "quantile", f->value, HF_TOLERANCE_QUANTILES);
     hf_json_list(j, "quantile_low", f->low, HF_TOLERANCE_QUANTILES);
     hf_json_list(j, "quantile_high", f->high, HF_TOLERANCE_QUANTILES);

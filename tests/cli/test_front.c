@@ -489,6 +489,23 @@ START_TEST(generations_keep_their_front)
 }
 END_TEST
 
+/* Both ends keep a maximum of the objective psi, and the design with the minimum ratio has all of it. */
+START_TEST(a_required_psi_limits_the_front)
+{
+    const char *path = keep(source_path("configs/chen2022.yaml")), *out = temp("r.h5");
+    HIFDM(0, "run", path, "-o", out, "--quiet", "--set", "optimize.method=lm", "--set",
+          "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]", "--set",
+          "requirements=[{figure: psi, at_most: 5e-3}]");
+    EXPECT(out, "--", "a['front/status'][:].tolist() == [0] * 21", "a['front/objective'][:, 0].max() <= 5e-3",
+           "a['front/objective'][:, 0].max() > 4.9e-3", "abs(a['front/objective'][:, 0].min() - 4.28338e-3) < 1e-8",
+           "a['front/objective'][:, 1].min() < 4.72");
+    HIFDM(3, "run", path, "-o", temp("o.h5"), "--set", "optimize.method=lm", "--set",
+          "optimize.front=[{figure: psi}, {figure: ratio, set: boundary}]", "--set",
+          "requirements=[{figure: psi, at_most: 4e-3}]");
+    ERR("found no design with the minimum objective_0_psi");
+}
+END_TEST
+
 Suite *suite_cli_front(void)
 {
     Suite *suite = suite_create("cli/front");
@@ -515,5 +532,6 @@ Suite *suite_cli_front(void)
     tcase_add_test(tests, limits_that_no_design_keeps_leave_no_front);
     tcase_add_test(tests, points_that_have_not_converged_say_so);
     tcase_add_test(tests, generations_keep_their_front);
+    tcase_add_test(tests, a_required_psi_limits_the_front);
     return suite;
 }
