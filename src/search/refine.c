@@ -535,12 +535,18 @@ static void count_settled(hf_refine_problem *p, double merit, double promised_pa
 }
 
 /* Returns true if the run has settled. In a flat curved valley, each step promises far more than the next one gains,
- * so the promised gain alone would not end the run. A run that continues a finished one never settles. is_kept: the
- * model has changed since the last call. */
+ * so the promised gain alone would not end the run. A run that continues a finished one never settles, and one without
+ * prospect of a better merit than a known one settles at its first such step. is_kept: the model has changed since the
+ * last call. */
 static bool is_settled(hf_refine_problem *p, double merit, bool is_kept)
 {
-    if (p->front || (p->watcher && p->watcher->is_more) || p->settled_steps < SETTLED_STEPS) return false;
-    return p->settled_steps >= 2 * SETTLED_STEPS || (is_kept && predict(p, merit) < SETTLED_GAIN);
+    const hf_refine_watcher *of = p->watcher;
+    if (p->front || (of && of->is_more) || p->settled_steps == 0) return false;
+    if (p->settled_steps >= 2 * SETTLED_STEPS) return true;
+    bool is_race = of && of->beat > 0 && !p->relaxed;
+    if (!is_kept || (p->settled_steps < SETTLED_STEPS && !is_race)) return false;
+    double part = predict(p, merit);
+    return part < SETTLED_GAIN && (p->settled_steps >= SETTLED_STEPS || merit * (1 - part) > of->beat);
 }
 
 /* Returns true if rounding hardly changes the merit of the other objectives. */

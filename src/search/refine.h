@@ -48,6 +48,7 @@ typedef struct {
     size_t n_state;
     const double *state; /* state of an earlier run with the same arguments, ignored if it does not fit; NULL: none */
     bool is_more;        /* continue the state of a run that has settled; this run ends only for the other reasons */
+    double beat;         /* a known merit; a run that is expected to remain above it settles early; 0: none */
 } hf_refine_watcher;
 
 /* Returns true if designs of this evaluator can be refined. The net must have a Newton matrix, there must be design

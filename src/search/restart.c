@@ -12,6 +12,7 @@
 #define SAME_MERIT 1e-4   /* the same for the merit if a run has settled, because it has not converged to a shape */
 #define ZERO 1e-10        /* merits below this part of the first one are rounding: such optima count as one */
 #define BETTER_RATIO 1e-9 /* part of the merit by which a better optimum is better */
+#define WORTH_RATIO 1e-6  /* the same for a start that has succeeded, or a refinement that goes on with small steps */
 #define AT_ONCE 64        /* starts that the threads rank together */
 #define RANKED_MIN 64     /* even if so many cost more than RANKING */
 #define RANKING 0.2       /* operations of one ranking, in those of one refinement */
@@ -77,17 +78,13 @@ static void count(restart *q, double merit, hf_refine_stop stop)
 
 /* ---- starts ---- */
 
-static bool is_leader(const restart *q, int k)
-{
-    return q->v->model->variable_leader[k] == k;
-}
-
-/* Returns the other bound of variable k of the best design, or NaN if the variable is at no bound. */
+/* Returns the other bound of variable k of the best design, or NaN if the variable is at no bound, or is linked to
+ * another one. */
 static double other_bound(const restart *q, int k)
 {
     double low = q->bounds->lower[k], high = q->bounds->upper[k];
     double other = q->best[k] <= low ? high : q->best[k] >= high ? low : (double)NAN;
-    return is_leader(q, k) && isfinite(other) && low < high ? other : (double)NAN;
+    return q->v->model->variable_leader[k] == k && isfinite(other) && low < high ? other : (double)NAN;
 }
 
 /* Writes the best design with variable k at its other bound. */
@@ -131,7 +128,7 @@ static bool next_flip(restart *q, double *design)
 {
     int k = -1;
     for (int i = 0; i < q->bounds->n_variable; i++)
-        if (isfinite(q->flipped[i]) && (k < 0 || q->flipped[i] < q->flipped[k])) k = i;
+        if (isfinite(q->flipped[i]) && !isnan(other_bound(q, i)) && (k < 0 || q->flipped[i] < q->flipped[k])) k = i;
     if (k < 0) return false;
     q->flipped[k] = INFINITY;
     flip(q, k, design);
@@ -181,26 +178,30 @@ static hf_status create(restart *q)
     return HF_OK;
 }
 
-/* Refines q->start and counts its optimum. *is_better: it is better than the best one, and becomes it. */
+/* Refines q->start and counts its optimum, which becomes the best one if it is better. *is_better: it is better by more
+ * than WORTH_RATIO. */
 static hf_status refine(restart *q, int max_iterations, const hf_refine_watcher *watcher, hf_refine_result *result,
                         bool *is_better)
 {
     const hf_population *p = q->bounds;
     hf_refine_result to = {0};
     hf_form_result r;
+    hf_refine_watcher racing = watcher ? *watcher : (hf_refine_watcher){0};
+    if (isfinite(q->best_merit)) racing.beat = q->best_merit * (1 - WORTH_RATIO);
     *is_better = false;
     for (int k = 0; k < p->n_variable; k++)
         q->start[k] = hf_population_clamp(p, k, q->start[k]);
-    hf_status status = hf_refine_run(q->v, p->lower, p->upper, max_iterations, NULL, watcher, q->start, q->w, &to);
+    hf_status status = hf_refine_run(q->v, p->lower, p->upper, max_iterations, NULL, &racing, q->start, q->w, &to);
     result->evaluations += to.evaluations;
     if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
     if (status != HF_OK || to.stop == HF_REFINE_MAX_ITERATIONS) return HF_OK;
     hf_evaluate(q->v, q->start, q->w, q->point, &r);
     if (r.status != HF_OK) return HF_OK;
-    *is_better = !(r.merit >= q->best_merit * (1 - BETTER_RATIO) - q->zero);
-    if (*is_better) q->best_merit = r.merit;
+    *is_better = !(r.merit >= q->best_merit * (1 - WORTH_RATIO) - q->zero);
+    bool is_best = !(r.merit >= q->best_merit * (1 - BETTER_RATIO) - q->zero);
+    if (is_best) q->best_merit = r.merit;
     count(q, r.merit, to.stop);
-    if (!*is_better) return HF_OK;
+    if (!is_best) return HF_OK;
     to.evaluations = result->evaluations;
     *result = to;
     memcpy(q->best, q->start, (size_t)p->n_variable * sizeof *q->best);

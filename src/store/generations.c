@@ -81,12 +81,6 @@ static bool is_result(int i)
     return i >= HF_ROW_RESULT && i < HF_ROW_TRIAL_STATUS;
 }
 
-/* Returns true for a figure that is known again as soon as an individual is proposed again. */
-static bool is_proposed(int i)
-{
-    return i == HF_ROW_BREEDING || i == HF_ROW_BREEDING + 1;
-}
-
 /* Returns true if individual i has design and results of an individual of the generation before. */
 static bool is_kept(const hf_population *p, int i)
 {
@@ -393,7 +387,8 @@ static size_t piece_bytes(const hf_generations *g, const hf_generations_head *he
     if (i == HF_ROW_PLACE) return head->n_new >= 0 && !has_last(g) ? g->row_bytes[i] : 0;
     if (i == HF_ROW_RESULT) return (size_t)head->n_fresh * g->fresh_bytes;
     if (i == HF_GENERATIONS_PIECES) return head->n_new > 0 ? (size_t)head->n_new * g->row_bytes[HF_ROW_DESIGN] : 0;
-    return is_result(i) || is_proposed(i) ? 0 : g->whole_bytes[i];
+    bool is_proposed = i == HF_ROW_BREEDING || i == HF_ROW_BREEDING + 1; /* known again when breeding is repeated */
+    return is_result(i) || is_proposed ? 0 : g->whole_bytes[i];
 }
 
 void hf_generations_add(hf_generations *g, const hf_population *population, struct iovec *piece)

@@ -60,6 +60,16 @@ START_TEST(one_optimum_is_one)
 }
 END_TEST
 
+/* In a flat valley, the restarts end when the model promises no lower psi: 98 evaluations instead of 182. */
+START_TEST(restarts_without_prospect_end_early)
+{
+    HIFDM(0, "run", keep(source_path("configs/straight-edges.yaml")), "-o", temp("e.h5"), "--json", "--set",
+          "optimize.method=auto", "--set", "optimize.boundary_ratio_cap=4.25");
+    EXPECT(out_as("e.json"), "--", "near(a['refine']['psi_m'], 6.3451888e-3, 1e-11)",
+           "sum(o['count'] for o in a['refine']['optima']) == 4", "a['refine']['evaluations'] < 120");
+}
+END_TEST
+
 /* Without derivatives it is the method ga, with all its generations. */
 START_TEST(without_derivatives_it_is_a_search)
 {
@@ -88,6 +98,7 @@ Suite *suite_cli_auto(void)
     tcase_add_test(tests, one_refinement_does_not);
     tcase_add_test(tests, threads_change_nothing);
     tcase_add_test(tests, one_optimum_is_one);
+    tcase_add_test(tests, restarts_without_prospect_end_early);
     tcase_add_test(tests, without_derivatives_it_is_a_search);
     tcase_add_test(tests, an_unfinished_refinement_has_no_optimum);
     return suite;

@@ -220,8 +220,7 @@ START_TEST(a_run_keeps_to_shapes_of_the_law_tension)
 }
 END_TEST
 
-/* psi is known to about coupling.tof_m. A maximum far below it is missed by less than that, and met with a smaller
- * tolerance. */
+/* A maximum far below the error bound of psi is missed by less than that, and met with smaller tolerances. */
 START_TEST(a_maximum_of_psi_below_the_tolerances_names_them)
 {
     const char *c = file_with(
@@ -456,7 +455,7 @@ START_TEST(a_run_that_gains_nothing_more_has_settled)
                             "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
                             "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}]}\n");
     HIFDM(0, "run", c, "-o", out, "--set", "optimize.objective=[{figure: facets, feed: fixed}]");
-    OUT(": the last five gained less than 0.01 %, the model predicts at most ");
+    OUT(": the last steps gained less than 0.01 %, the model predicts at most ");
     HIFDM(0, "run", c, "-o", exact, "--set", "optimize.front=[{figure: facets, feed: fixed}, {figure: psi}]", "--set",
           "optimize.front_points=3");
     EXPECT(out, exact, "--", "a['refine'].attrs['algorithm_stop'] == 3", "a['refine'].attrs['steps'] < 20",
