@@ -390,12 +390,11 @@ static double rounding_of(const hf_merged *m, const char *objective)
 /* Returns the value of ranking figure k, without differences of rounding. */
 static double rounded_value(const hf_merged *m, int k, int i)
 {
-    double value = rank_value(m, m->leads.figure[k], i);
-    if (value <= m->leads.floor[k]) return m->leads.floor[k];
+    double value = rank_value(m, m->leads.figure[k], i), least = m->leads.floor[k];
     if (hf_merged_is_margin(m, m->leads.figure[k]) && fabs(value) < MARGIN_SHOWN) return 0;
-    if (value == 0 || !isfinite(value)) return value;
+    if (value == 0 || !isfinite(value)) return fmax(least, value);
     double unit = SAME_RATIO * pow(10, floor(log10(fabs(value))));
-    return unit * round(value / unit);
+    return fmax(least, unit * round(value / unit));
 }
 
 /* Compares two points by their verdicts and then by the ranking figures: negative if i ranks first. */

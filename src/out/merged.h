@@ -81,7 +81,7 @@ typedef struct {
     hf_series row_value, row_at_least, row_at_most;
     hf_merged_judgement *judgement; /* [n] owned */
     /* The figures that rank the points, after what they fail (hf_merged_is_judged): the next one ranks points that are
-     * equal in those before. Values below `floor` are equal, and so are margins that print as 0. */
+     * equal in those before. Values up to `floor` are equal, and so are margins that print as 0. */
     struct {
         int figure[HF_MERGED_LEADS_MAX], n, most;
         double floor[HF_MERGED_LEADS_MAX];
