@@ -105,8 +105,7 @@ void hf_optimiser_free(hf_optimiser *optimiser);
  *                    because no better design was found or could be measured
  *   MAX_ITERATIONS   the maximum number of steps was reached
  *   SETTLED          the last five steps together lowered the merit by less than 1e-4 of it, and changed no weighted
- *                    objective by more than 1e-3 of the merit; or one step did, in a further refinement of the method
- *                    auto that is not expected to become the best
+ *                    objective by more than 1e-3 of the merit
  *   TAKEN            the algorithm did not run: the design is a point of a front */
 typedef enum {
     HF_REFINE_CONVERGED,

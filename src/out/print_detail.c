@@ -58,8 +58,8 @@ void hf_print_generations(const hf_search_summary *s, FILE *f)
 void hf_print_steps(const hf_refine_summary *r, FILE *f)
 {
     static const char *const before[] = {"converged", "stalled", "not converged", "settled", "none"};
-    static const char *const why[] = {"", ": shorter steps gain nothing", "",
-                                      ": the last steps gained less than 0.01 %", ""};
+    static const char *const why[] = {"", ": shorter steps gain nothing", "", ": the last five gained less than 0.01 %",
+                                      ""};
     fprintf(f, "%s after %d step%s%s", before[r->algorithm_stop], r->steps, r->steps == 1 ? "" : "s",
             why[r->algorithm_stop]);
     if (r->algorithm_stop == HF_REFINE_CONVERGED || !isfinite(r->predicted_gain)) return;

@@ -698,15 +698,17 @@ void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf
 }
 
 /* Returns true if the shape in the workspace, whose result is `r`, misses a maximum of psi, the only requirement, by
- * less than the error of psi: a more accurate shape may meet it. */
-static bool misses_by_rounding(hf_problem *p, hf_form_result r)
+ * less than the certified error of psi, or the tolerance of the coupling if no error is certified: a more accurate
+ * shape may meet it. */
+static bool misses_by_error(hf_problem *p, hf_form_result r)
 {
     const hf_constraints *c = hf_problem_constraints_of(p);
     if (!c || c->n != 1 || !(c->psi_most_m > 0)) return false;
     r.status = HF_OK;
     r.psi_m = hf_metrics_psi_m(&p->model, &p->workspace);
     hf_certify(&p->model, &p->workspace, &r);
-    return r.psi_m > c->psi_most_m && r.psi_m - c->psi_most_m < r.psi_bound_m;
+    double error_m = isnan(r.psi_bound_m) && p->model.n_attachment ? p->settings.form.coupling.tof_m : r.psi_bound_m;
+    return r.psi_m > c->psi_most_m && r.psi_m - c->psi_most_m < error_m;
 }
 
 const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const double *design, hf_status status,
@@ -716,7 +718,7 @@ const char *hf_no_design_to_refine(hf_problem *p, const double *initial, const d
     char broken[2 * HF_HELD_NAME_SIZE], hint[HF_NO_DESIGN_HINT_SIZE], first[HF_FEASIBLE_ADVICE_SIZE + 2];
     name_broken(p, design, &start, broken);
     const char *wider = p->model.variable ? "Widen the ranges and bounds of optimize.variables, " : "";
-    if (start.status == HF_OUT_OF_LIMITS && misses_by_rounding(p, start))
+    if (start.status == HF_OUT_OF_LIMITS && misses_by_error(p, start))
         wider = p->model.n_attachment
                     ? "Lower coupling.tof_m and form.residual_tolerance, which bound the accuracy of psi, "
                     : "Lower form.residual_tolerance, which bounds the accuracy of psi, ";

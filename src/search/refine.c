@@ -535,9 +535,9 @@ static void count_settled(hf_refine_problem *p, double merit, double promised_pa
 }
 
 /* Returns true if the run has settled. In a flat curved valley, each step promises far more than the next one gains,
- * so the promised gain alone would not end the run. A run that continues a finished one never settles, and one without
- * prospect of a better merit than a known one settles at its first such step. is_kept: the model has changed since the
- * last call. */
+ * so the promised gain alone would not end the run. A run that continues a finished one never settles, and one whose
+ * predicted merit remains above `beat` settles at its first small step. is_kept: the model has changed since the last
+ * call. */
 static bool is_settled(hf_refine_problem *p, double merit, bool is_kept)
 {
     const hf_refine_watcher *of = p->watcher;
@@ -671,9 +671,8 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
         if (status == HF_OK && !p->front) status = bend_step(p, before, gain);
         if (status == HF_NO_MEMORY || status == HF_INTERRUPTED) return status;
         double merit = hf_refine_merit(p, &p->result), after = status == HF_OK ? merit * merit / 2 : (double)INFINITY;
-        /* Limits on objectives may be so curved that a corrected step leads back. The promise is then that of the first
-         * solve. */
-        double promise = p->front ? p->promise : gain;
+        /* Limits may be so curved that a corrected step leads back. The promise is then that of the first solve. */
+        double promise = p->front || status == HF_RATIO_CAP ? p->promise : gain;
         bool promises = promise > converged * before && 2 * promise > p->noise * p->noise;
         bool is_last = (status == HF_OK || status == HF_RATIO_CAP) && !promises, is_kept = after < before;
         if (is_last) r->stop = HF_REFINE_CONVERGED;
@@ -682,7 +681,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
             p->damping *= DAMPING_TOO_MUCH;
         }
         status = HF_OK;
-        double promised_part = part_of(promise, r->merit);
+        double promised_part = part_of(p->front ? promise : gain, r->merit);
         count_settled(p, is_kept ? merit : r->merit, promised_part, is_kept);
         if (is_kept) {
             status = accept(p, merit, (before - after) / gain, promised_part, r);
@@ -693,6 +692,7 @@ static hf_status minimise(hf_refine_problem *p, int max_iterations, hf_refine_re
         }
         if (status == HF_OK && r->stop == HF_REFINE_MAX_ITERATIONS && is_settled(p, r->merit, is_kept))
             r->stop = HF_REFINE_SETTLED;
+        r->is_beaten = r->stop == HF_REFINE_SETTLED && p->settled_steps < SETTLED_STEPS;
         if (status == HF_OK && p->relaxed && r->stop != HF_REFINE_MAX_ITERATIONS) status = reweigh(p, r);
         if (status == HF_OK) HF_TRY(tell_watcher(p, r, max_iterations));
     }

@@ -19,6 +19,7 @@ typedef struct {
      * start is infeasible. */
     double start_merit, merit;
     hf_refine_stop stop;
+    bool is_beaten; /* the run ended early because it was not expected to pass the merit of the watcher's `beat` */
     /* Part of the merit by which the linear model, without damping and within the limits, would still lower it. It is 0
      * if the run has converged, and NaN for a point of a front or if the model has no solution. */
     double predicted_gain;
@@ -48,7 +49,7 @@ typedef struct {
     size_t n_state;
     const double *state; /* state of an earlier run with the same arguments, ignored if it does not fit; NULL: none */
     bool is_more;        /* continue the state of a run that has settled; this run ends only for the other reasons */
-    double beat;         /* a known merit; a run that is expected to remain above it settles early; 0: none */
+    double beat;         /* a run that the model expects to remain above this merit settles early; 0: none */
 } hf_refine_watcher;
 
 /* Returns true if designs of this evaluator can be refined. The net must have a Newton matrix, there must be design

@@ -12,7 +12,7 @@
 #define SAME_MERIT 1e-4   /* the same for the merit if a run has settled, because it has not converged to a shape */
 #define ZERO 1e-10        /* merits below this part of the first one are rounding: such optima count as one */
 #define BETTER_RATIO 1e-9 /* part of the merit by which a better optimum is better */
-#define WORTH_RATIO 1e-6  /* the same for a start that has succeeded, or a refinement that goes on with small steps */
+#define WORTH_RATIO 1e-6  /* the same for a refinement to go on with small steps */
 #define AT_ONCE 64        /* starts that the threads rank together */
 #define RANKED_MIN 64     /* even if so many cost more than RANKING */
 #define RANKING 0.2       /* operations of one ranking, in those of one refinement */
@@ -49,22 +49,24 @@ static double distance_m(const restart *q, const double *a)
     return most;
 }
 
-/* Counts the optimum whose shape is in the workspace, unless its run has stalled. A new one is inserted by its
- * merit. */
-static void count(restart *q, double merit, hf_refine_stop stop)
+/* Counts the optimum whose shape is in the workspace, unless its run has stalled. A new one is inserted by its merit,
+ * unless its run ended early. */
+static void count(restart *q, double merit, const hf_refine_result *to)
 {
     hf_optima *o = q->optimum;
     size_t n = 3 * (size_t)q->v->model->n_node;
     int at = o->n;
-    if (stop != HF_REFINE_CONVERGED && stop != HF_REFINE_SETTLED) return;
+    if (to->stop != HF_REFINE_CONVERGED && to->stop != HF_REFINE_SETTLED) return;
     for (int i = 0; i < o->n; i++) {
         double by = fabs(merit - o->merit[i]);
-        bool is_same = by <= q->zero || (stop == HF_REFINE_SETTLED && by <= SAME_MERIT * merit);
+        bool is_same =
+            by <= fmax(q->zero, to->stop == HF_REFINE_SETTLED ? (to->is_beaten ? WORTH_RATIO : SAME_MERIT) * merit : 0);
         if (!is_same && distance_m(q, q->shape_m + (size_t)i * n) > SAME_SHAPE * q->size_m) continue;
         o->count[i]++;
         if (merit == q->best_merit) o->merit[i] = merit;
         return;
     }
+    if (to->is_beaten) return;
     for (; at > 0 && merit < o->merit[at - 1]; at--) {
         o->merit[at] = o->merit[at - 1];
         o->count[at] = o->count[at - 1];
@@ -128,7 +130,7 @@ static bool next_flip(restart *q, double *design)
 {
     int k = -1;
     for (int i = 0; i < q->bounds->n_variable; i++)
-        if (isfinite(q->flipped[i]) && !isnan(other_bound(q, i)) && (k < 0 || q->flipped[i] < q->flipped[k])) k = i;
+        if (isfinite(q->flipped[i]) && (k < 0 || q->flipped[i] < q->flipped[k])) k = i;
     if (k < 0) return false;
     q->flipped[k] = INFINITY;
     flip(q, k, design);
@@ -178,8 +180,7 @@ static hf_status create(restart *q)
     return HF_OK;
 }
 
-/* Refines q->start and counts its optimum, which becomes the best one if it is better. *is_better: it is better by more
- * than WORTH_RATIO. */
+/* Refines q->start and counts its optimum. *is_better: it is better than the best one, and becomes it. */
 static hf_status refine(restart *q, int max_iterations, const hf_refine_watcher *watcher, hf_refine_result *result,
                         bool *is_better)
 {
@@ -187,7 +188,7 @@ static hf_status refine(restart *q, int max_iterations, const hf_refine_watcher 
     hf_refine_result to = {0};
     hf_form_result r;
     hf_refine_watcher racing = watcher ? *watcher : (hf_refine_watcher){0};
-    if (isfinite(q->best_merit)) racing.beat = q->best_merit * (1 - WORTH_RATIO);
+    racing.beat = q->best_merit * (1 - WORTH_RATIO);
     *is_better = false;
     for (int k = 0; k < p->n_variable; k++)
         q->start[k] = hf_population_clamp(p, k, q->start[k]);
@@ -197,11 +198,10 @@ static hf_status refine(restart *q, int max_iterations, const hf_refine_watcher 
     if (status != HF_OK || to.stop == HF_REFINE_MAX_ITERATIONS) return HF_OK;
     hf_evaluate(q->v, q->start, q->w, q->point, &r);
     if (r.status != HF_OK) return HF_OK;
-    *is_better = !(r.merit >= q->best_merit * (1 - WORTH_RATIO) - q->zero);
-    bool is_best = !(r.merit >= q->best_merit * (1 - BETTER_RATIO) - q->zero);
-    if (is_best) q->best_merit = r.merit;
-    count(q, r.merit, to.stop);
-    if (!is_best) return HF_OK;
+    *is_better = !to.is_beaten && !(r.merit >= q->best_merit * (1 - BETTER_RATIO) - q->zero);
+    if (*is_better) q->best_merit = r.merit;
+    count(q, r.merit, &to);
+    if (!*is_better) return HF_OK;
     to.evaluations = result->evaluations;
     *result = to;
     memcpy(q->best, q->start, (size_t)p->n_variable * sizeof *q->best);
@@ -240,7 +240,7 @@ hf_status hf_restart_run(hf_batch *batch, const hf_population *p, int max_iterat
         memcpy(q.best, design, (size_t)p->n_variable * sizeof *design);
         q.best_merit = r.status == HF_OK ? r.merit : (double)INFINITY;
         if (isfinite(result->start_merit)) q.zero = ZERO * result->start_merit;
-        if (r.status == HF_OK) count(&q, r.merit, result->stop);
+        if (r.status == HF_OK) count(&q, r.merit, result);
         status = refine_all(&q, max_iterations, watcher, result);
         result->evaluations += q.n_ranked;
         if (status == HF_OK) memcpy(design, q.best, (size_t)p->n_variable * sizeof *design);

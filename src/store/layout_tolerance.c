@@ -112,12 +112,6 @@ static void take_measures(int n, measured *stored, hf_tolerance_summary *s)
     }
 }
 
-/* Returns the length of a data set, 0 if there is none. */
-static int length_of(hf_hdf5 *io, hid_t group, const char *name, int max)
-{
-    return hf_hdf5_has(io, group, name) ? hf_hdf5_length(io, group, name, max) : 0;
-}
-
 void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
 {
     measured figures[HF_TOLERANCE_N_MEASURE] = {{{0}, 0, {0}}};
@@ -128,7 +122,8 @@ void hf_layout_get_tolerance(hf_hdf5 *io, hf_summary *summary)
     int n = hf_hdf5_length(io, group, "measure", HF_TOLERANCE_N_MEASURE);
     hf_layout_pass_fields(io, false, group, HF_LAYOUT_TABLE(measured_field), n, 0, figures);
     if (io->status == HF_OK) take_measures(n, figures, s);
-    s->n_ranked = length_of(io, group, "ranked_share", HF_TOLERANCE_RANKED);
+    bool is_ranked = hf_hdf5_has(io, group, "ranked_share");
+    s->n_ranked = is_ranked ? hf_hdf5_length(io, group, "ranked_share", HF_TOLERANCE_RANKED) : 0;
     /* Version 0.1 had fewer kinds. */
     pass_shares(io, false, group, hf_hdf5_length(io, group, "kind_share", HF_TOLERANCE_KINDS), s);
     for (int k = 0; k < s->n_ranked; k++)

@@ -246,6 +246,17 @@ END_TEST
     "scallop: 0.1754, supports: module_corners, edge_tie_m: 0.274}\n"                                                  \
     "form: {pretension_N: 10}\n"
 
+/* The first steps lead to nets that collapse, or whose tensions the cap bends back. Shorter steps gain. */
+START_TEST(a_step_that_the_cap_bends_back_is_not_the_last_one)
+{
+    const char *c = file_with("c.yaml", CYLINDER "optimize:\n  method: lm\n  boundary_ratio_cap: 100\n"
+                                                 "  objective: [{figure: pull}]\n"
+                                                 "  variables: [{set: boundary, vary: tension, range: 20 %}]\n");
+    HIFDM(0, "run", c, "-o", temp("p.h5"), "--json");
+    EXPECT(out_as("p.json"), "--", "a['form']['merit'] > 54.9 and a['refine']['merit'] < 48.5");
+}
+END_TEST
+
 /* A requirement on tensions is the same limit as a row of optimize.limits. */
 START_TEST(requirements_on_tensions_are_limits)
 {
@@ -314,7 +325,7 @@ START_TEST(a_maximum_of_psi_with_room_takes_few_steps)
           "--set", "optimize.rule=tension", "--set", "optimize.objective=[{figure: evenness, set: edge}]", "--set",
           "requirements=[{figure: psi, at_most: 7e-3}]");
     EXPECT(out, "--", "a['refine'].attrs['steps'] < 150", "a['refine'].attrs['merit'] < 0.1467",
-           "a['refine'].attrs['psi_m'] <= 7e-3", "a['refine'].attrs['algorithm_stop'] == 3");
+           "a['refine'].attrs['psi_m'] <= 7e-3", "a['refine'].attrs['algorithm_stop'] == 0");
 }
 END_TEST
 
@@ -455,7 +466,7 @@ START_TEST(a_run_that_gains_nothing_more_has_settled)
                             "form: {pretension_N: 10, prestress: exact}\nsurface: {}\n"
                             "optimize: {method: lm, variables: [{set: all, vary: force_density, range: 50 %}]}\n");
     HIFDM(0, "run", c, "-o", out, "--set", "optimize.objective=[{figure: facets, feed: fixed}]");
-    OUT(": the last steps gained less than 0.01 %, the model predicts at most ");
+    OUT(": the last five gained less than 0.01 %, the model predicts at most ");
     HIFDM(0, "run", c, "-o", exact, "--set", "optimize.front=[{figure: facets, feed: fixed}, {figure: psi}]", "--set",
           "optimize.front_points=3");
     EXPECT(out, exact, "--", "a['refine'].attrs['algorithm_stop'] == 3", "a['refine'].attrs['steps'] < 20",
@@ -562,6 +573,7 @@ Suite *suite_cli_limits(void)
     tcase_add_test(tests, many_variables_reach_what_dense_steps_reach);
     tcase_add_test(tests, evenness_falls_under_a_maximum_of_psi);
     tcase_add_test(tests, a_run_keeps_to_shapes_of_the_law_tension);
+    tcase_add_test(tests, a_step_that_the_cap_bends_back_is_not_the_last_one);
     tcase_add_test(tests, a_maximum_of_psi_below_the_tolerances_names_them);
     tcase_add_loop_test(tests, requirements_on_tensions_are_limits, 0, 6);
     tcase_add_loop_test(tests, objectives_use_all_of_a_maximum_of_psi, 0, 3);

@@ -57,7 +57,7 @@ START_TEST(a_settled_run_continues_and_a_converged_one_does_not)
     const char *c = case_of("c.yaml", NET, "lm", 200), *path = temp("r.h5"), *before = temp("before.h5");
     HIFDM(0, "run", c, "-o", path);
     OUT("settled after ");
-    OUT(": the last steps gained less than 0.01 %, the model predicts at most ");
+    OUT(": the last five gained less than 0.01 %, the model predicts at most ");
     SHELL(0, "cp \"$1\" \"$2\"", path, before);
     HIFDM(0, "run", c, "-o", path, "--more", "200");
     OUT("converged after ");
@@ -97,7 +97,7 @@ START_TEST(a_model_that_its_steps_refute_is_no_claim)
     const char *c = case_of("c.yaml", NET, "lm", 200), *path = temp("r.h5"),
                *refocused = "optimize.objective=[{figure: facets, feed: refocused}]";
     HIFDM(0, "run", c, "-o", path, "--set", refocused);
-    OUT(": the last steps gained less than 0.01 %, although the model predicts at most ");
+    OUT(": the last five gained less than 0.01 %, although the model predicts at most ");
     HIFDM(0, "run", c, "-o", path, "--set", refocused, "--more", "12");
     ERR("the last 10 steps lowered the merit by ");
     ck_assert(!strstr(said.err, "Better designs are near"));

@@ -95,6 +95,28 @@ START_TEST(unfinished_refinements_do_not_count)
 }
 END_TEST
 
+/* A merit that the run can pass, and one that it cannot. */
+START_TEST(a_merit_to_beat_ends_only_runs_that_cannot_pass_it)
+{
+    begin(1, 40);
+    const hf_population *p = &d.optimiser.population;
+    for (int k = 0; k < 2; k++) {
+        hf_refine_watcher watcher = {.beat = d.result.merit * (k == 0 ? 1.0001 : 0.5)};
+        double design[MAX_VARIABLE];
+        hf_refine_result result;
+        memcpy(design, p->design + (size_t)p->best * (size_t)p->n_variable, (size_t)p->n_variable * sizeof(double));
+        ck_assert_int_eq(
+            hf_refine_run(&d.r.evaluator, p->lower, p->upper, N_STEP, NULL, &watcher, design, &d.r.net.work, &result),
+            HF_OK);
+        ck_assert_int_le(result.iterations, d.result.iterations);
+        if (k == 0) ck_assert_mem_eq(design, d.design, (size_t)p->n_variable * sizeof(double));
+        if (result.is_beaten) ck_assert_int_eq(result.stop, HF_REFINE_SETTLED);
+        if (result.is_beaten) ck_assert_int_eq(k, 1);
+    }
+    end();
+}
+END_TEST
+
 static hf_status stop_at(void *context, const hf_refine_progress *now)
 {
     int *left = context;
@@ -140,6 +162,7 @@ Suite *suite_unit_restart(void)
     suite_add_tcase(suite, tests);
     tcase_add_loop_test(tests, the_best_optimum_is_kept, 0, 6);
     tcase_add_test(tests, unfinished_refinements_do_not_count);
+    tcase_add_test(tests, a_merit_to_beat_ends_only_runs_that_cannot_pass_it);
     tcase_add_test(tests, a_watcher_can_stop_it);
     tcase_add_test(tests, memory_may_fail);
     return suite;
