@@ -686,7 +686,7 @@ void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf
         snprintf(what, sizeof what, "bound of %s is missed in all designs",
                  hf_problem_constraint_name(p, doubt->constraint, name, sizeof name));
     } else {
-        if (limit->row != HF_LIMITS_CAP) snprintf(bound, sizeof bound, "its bound in optimize.limits");
+        if (limit->row != HF_LIMITS_CAP) snprintf(bound, sizeof bound, "its bound");
         snprintf(what, sizeof what, "%s is at %s %.4g in all designs, but %s is %g",
                  hf_limits_name(&p->scene, &p->model, limit, name, sizeof name),
                  limit->value > limit->bound ? "least" : "most", limit->value, bound, limit->bound);

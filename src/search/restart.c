@@ -180,7 +180,8 @@ static hf_status create(restart *q)
     return HF_OK;
 }
 
-/* Refines q->start and counts its optimum. *is_better: it is better than the best one, and becomes it. */
+/* Refines q->start and counts its optimum. *is_better: it is better than the best one, and becomes it. A run that ended
+ * early is at most 1e-6 better, and does not replace an optimum. */
 static hf_status refine(restart *q, int max_iterations, const hf_refine_watcher *watcher, hf_refine_result *result,
                         bool *is_better)
 {
@@ -214,7 +215,7 @@ static hf_status refine_all(restart *q, int max_iterations, const hf_refine_watc
     bool is_better = true;
     for (int i = 0, n_failed = 0; i < HF_RESTARTS; i++, n_failed += !is_better) {
         if (is_better) rank_flips(q);
-        bool is_initial = i == 0 && isinf(q->best_merit);
+        bool is_initial = i == 0 && (isinf(q->best_merit) || result->stop == HF_REFINE_STALLED);
         bool is_last = !is_initial && (n_failed >= FAILURES || !next_flip(q, q->start));
         if (is_initial) memcpy(q->start, q->bounds->initial, (size_t)q->bounds->n_variable * sizeof *q->start);
         if (is_last && !next_individual(q, q->start)) return HF_OK;

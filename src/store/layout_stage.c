@@ -399,6 +399,7 @@ void hf_layout_pass_stages(hf_hdf5 *io, bool writes, const hf_summary *summary)
     pass_surface(io, writes, s);
     if (writes) hf_layout_renew(io, io->file, "/set_tension");
     if (writes) hf_layout_renew(io, io->file, "/at_limit");
+    if (writes) hf_layout_renew(io, io->file, "/optima");
     for (int i = 0; i < HF_N_STAGE; i++) {
         if (!writes) get_pattern(io, s, i);
         pass_lists(io, writes, &s->stage[i], i);
