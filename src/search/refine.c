@@ -784,7 +784,7 @@ static hf_status refine_from(hf_refine_problem *p, int max_iterations, hf_form_r
         start->status = HF_OUT_OF_LIMITS;
     HF_TRY(minimise(p, max_iterations, r));
     if (lacks_steps(p, r)) return HF_OK;
-    /* The nearest design shows what cannot be met, unless psi, which had become an objective, is now beyond its maximum. */
+    /* The nearest design shows what cannot be met, unless psi, which had become an objective, is beyond its maximum. */
     if (p->is_outside && !p->front && !(p->relaxed && p->best_psi_m > p->psi_most_m))
         memcpy(design, p->best, (size_t)p->v.model->n_variable * sizeof(double));
     if (p->is_outside) return start->status == HF_OK ? HF_OUT_OF_LIMITS : start->status;
