@@ -105,6 +105,12 @@ static double brink_N(const hf_required_column *c, const hf_workspace *w, int mo
     return best_N;
 }
 
+/* Returns the minimum tension of the set if no cable may be slack, which brink_N finds in more time. */
+static double taut_N(const hf_required_column *c, const hf_workspace *w, int most, double *item)
+{
+    return most > 0 ? brink_N(c, w, most, item) : hf_required_extreme_N(c, w->tension_N, true, item);
+}
+
 static hf_required_net net_of(const constraints_room *r, const hf_workspace *w)
 {
     return (hf_required_net){r->c->model, w->position_m, w->tension_N};
@@ -157,12 +163,9 @@ static double beyond(constraints_room *r, int i_row, bool is_high, const hf_work
     const hf_requirement_settings *row = &q->row[i_row];
     int column = is_high ? q->high[i_row] : q->low[i_row];
     if (column < 0) return (double)NAN;
-    const hf_required_column *c = &q->column[column];
     double slack_N = HF_SLACK_RATIO * r->c->model->reference_N;
-    int most = row->figure == HF_REQUIRED_SLACK ? (int)row->at_most : 0; /* brink_N finds a minimum in more time */
-    if (row->figure == HF_REQUIRED_SLACK && is_high)
-        return slack_N - (most ? brink_N(c, w, most, item) : hf_required_extreme_N(c, w->tension_N, true, item));
-    if (row->figure == HF_REQUIRED_SLACK) return (double)NAN;
+    if (row->figure == HF_REQUIRED_SLACK)
+        return is_high ? slack_N - taut_N(&q->column[column], w, (int)row->at_most, item) : (double)NAN;
     double value = figure_of(r, column, w, item);
     double distance = is_high ? value - row->at_most : row->at_least - value;
     return isfinite(distance) ? distance : (double)INFINITY;

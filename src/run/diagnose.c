@@ -681,12 +681,12 @@ hf_status hf_no_design_evolved(hf_problem *p, const hf_population *of, const dou
 void hf_no_design_expected(const hf_problem *p, const hf_repair_doubt *doubt, hf_messages *messages)
 {
     const hf_limit_held *limit = &doubt->limit;
-    char what[2 * HF_HELD_NAME_SIZE], name[HF_HELD_NAME_SIZE], bound[64] = "boundary_ratio_cap";
+    char what[2 * HF_HELD_NAME_SIZE], name[HF_HELD_NAME_SIZE];
+    const char *bound = limit->row == HF_LIMITS_CAP ? "boundary_ratio_cap" : "its bound";
     if (doubt->constraint >= 0) {
         snprintf(what, sizeof what, "bound of %s is missed in all designs",
                  hf_problem_constraint_name(p, doubt->constraint, name, sizeof name));
     } else {
-        if (limit->row != HF_LIMITS_CAP) snprintf(bound, sizeof bound, "its bound");
         snprintf(what, sizeof what, "%s is at %s %.4g in all designs, but %s is %g",
                  hf_limits_name(&p->scene, &p->model, limit, name, sizeof name),
                  limit->value > limit->bound ? "least" : "most", limit->value, bound, limit->bound);

@@ -69,7 +69,7 @@
 #define SETTLED_SLOW 0.25
 #define SETTLED_GAIN 1e-4
 #define SETTLED_OBJECTIVE 1e-3
-#define BEAT_PART 10 /* a run may gain as many times what the undamped model promises [8 random nets: up to 3.5] */
+#define BEAT_PART 10 /* a run may gain as many times what the undamped model promises [measured: up to 3.5] */
 /* An objective replaces a maximum of psi. Its weight is adapted until the other objectives could gain less than
  * ROOM_LEFT of their merit by more psi. WEIGHT_STEP is the largest factor of one adaptation while psi has been on
  * one side of the maximum only. A maximum out of reach is given up if psi falls by less than OUT_OF_REACH in such
@@ -542,12 +542,12 @@ static void count_settled(hf_refine_problem *p, double merit, double promised_pa
 static bool is_settled(hf_refine_problem *p, double merit, bool is_kept)
 {
     const hf_refine_watcher *of = p->watcher;
+    bool is_flat = p->settled_steps >= SETTLED_STEPS, is_race = of && of->beat > 0 && !p->relaxed;
     if (p->front || (of && of->is_more) || p->settled_steps == 0) return false;
     if (p->settled_steps >= 2 * SETTLED_STEPS) return true;
-    bool is_race = of && of->beat > 0 && !p->relaxed;
-    if (!is_kept || (p->settled_steps < SETTLED_STEPS && !is_race)) return false;
+    if (!is_kept || !(is_flat || is_race)) return false;
     double part = predict(p, merit);
-    return part < SETTLED_GAIN && (p->settled_steps >= SETTLED_STEPS || merit * (1 - BEAT_PART * part) > of->beat);
+    return part < SETTLED_GAIN && (is_flat || merit * (1 - BEAT_PART * part) > of->beat);
 }
 
 /* Returns true if rounding hardly changes the merit of the other objectives. */

@@ -56,11 +56,10 @@ static void count(restart *q, double merit, const hf_refine_result *to)
     hf_optima *o = q->optimum;
     size_t n = 3 * (size_t)q->v->model->n_node;
     int at = o->n;
+    double near = to->stop == HF_REFINE_CONVERGED ? 0 : to->is_beaten ? WORTH_RATIO : SAME_MERIT;
     if (to->stop != HF_REFINE_CONVERGED && to->stop != HF_REFINE_SETTLED) return;
     for (int i = 0; i < o->n; i++) {
-        double by = fabs(merit - o->merit[i]);
-        bool is_same =
-            by <= fmax(q->zero, to->stop == HF_REFINE_SETTLED ? (to->is_beaten ? WORTH_RATIO : SAME_MERIT) * merit : 0);
+        bool is_same = fabs(merit - o->merit[i]) <= fmax(q->zero, near * merit);
         if (!is_same && distance_m(q, q->shape_m + (size_t)i * n) > SAME_SHAPE * q->size_m) continue;
         o->count[i]++;
         if (merit == q->best_merit) o->merit[i] = merit;

@@ -36,6 +36,9 @@ static inline const char *temp(const char *name)
 #define CHEN keep(source_path("configs/straight-edges.yaml"))
 #define REFLECTOR keep(source_path("configs/reflector.yaml"))
 
+/* A reflector of two nets. */
+#define DISH "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
+
 /* A well-posed net that is solved in a millisecond. */
 #define SMALL_SCENE                                                                                                    \
     "scene:\n"                                                                                                         \

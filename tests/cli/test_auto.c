@@ -71,17 +71,15 @@ START_TEST(restarts_without_prospect_end_early)
 }
 END_TEST
 
-#define DISH                                                                                                           \
-    "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"                        \
-    "form: {pretension_N: 10, prestress: exact}\n"
+#define EXACT_DISH DISH "form: {pretension_N: 10, prestress: exact}\n"
 
 /* The first refinement, from outside the limits, stalls 28 % above what the initial design leads to. */
 START_TEST(a_stalled_refinement_is_not_the_last_word)
 {
-    const char *c = file_with("d.yaml", DISH "optimize:\n  method: auto\n"
-                                             "  variables: [{set: front, vary: force_density, range: 30 %}]\n"
-                                             "  objective: [{figure: tension, set: front, target: 12}]\n"
-                                             "  limits: [{figure: tension, set: tie, bounds: [3, 4.15]}]\n");
+    const char *c = file_with("d.yaml", EXACT_DISH "optimize:\n  method: auto\n"
+                                                   "  variables: [{set: front, vary: force_density, range: 30 %}]\n"
+                                                   "  objective: [{figure: tension, set: front, target: 12}]\n"
+                                                   "  limits: [{figure: tension, set: tie, bounds: [3, 4.15]}]\n");
     HIFDM(0, "run", c, "-o", temp("d.h5"), "--json");
     EXPECT(out_as("d.json"), "--", "a['refine']['merit'] < 1.8032");
 }
@@ -90,10 +88,10 @@ END_TEST
 /* The continuation has a list of optima of its own. */
 START_TEST(more_steps_renew_the_optima)
 {
-    const char *c = file_with("m.yaml", DISH "optimize:\n  method: auto\n"
-                                             "  variables: [{set: all, vary: force_density, range: 50 %}]\n"
-                                             "  objective: [{figure: ratio, set: front}]\n"
-                                             "  limits: [{figure: tension, set: tie, bounds: [2, 6]}]\n");
+    const char *c = file_with("m.yaml", EXACT_DISH "optimize:\n  method: auto\n"
+                                                   "  variables: [{set: all, vary: force_density, range: 50 %}]\n"
+                                                   "  objective: [{figure: ratio, set: front}]\n"
+                                                   "  limits: [{figure: tension, set: tie, bounds: [2, 6]}]\n");
     const char *out = temp("m.h5");
     HIFDM(0, "run", c, "-o", out, "--quiet");
     for (int i = 0; i < 2; i++) {

@@ -262,12 +262,11 @@ START_TEST(the_nearest_design_is_near_in_psi_too)
 {
     static const char *const method[] = {"lm", "auto"};
     const char *c =
-        file_with("c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
-                            "form: {pretension_N: 10, prestress: exact}\n"
-                            "optimize:\n  variables: [{set: front, vary: force_density, range: 30 %}]\n"
-                            "  objective: [{figure: psi}, {figure: ratio, set: front, weight: 1e-3}]\n"
-                            "requirements: [{figure: psi, at_most: 1e-3}, {figure: tension, set: front, "
-                            "within: [9, 12]}, {figure: tension, set: tie, at_least: 4}]\n");
+        file_with("c.yaml", DISH "form: {pretension_N: 10, prestress: exact}\n"
+                                 "optimize:\n  variables: [{set: front, vary: force_density, range: 30 %}]\n"
+                                 "  objective: [{figure: psi}, {figure: ratio, set: front, weight: 1e-3}]\n"
+                                 "requirements: [{figure: psi, at_most: 1e-3}, {figure: tension, set: front, "
+                                 "within: [9, 12]}, {figure: tension, set: tie, at_least: 4}]\n");
     HIFDM(3, "run", c, NOWHERE, "--set", keep(formatted("optimize.method=%s", method[_i])));
     ERR("requirements.2 (tension of tie) is missed by 0.201 N");
 }
@@ -350,14 +349,13 @@ START_TEST(room_for_psi_is_never_in_the_way)
 {
     static const char *const most[] = {"1e-9", "1e-7", "1e-5", "1e-4", "1e-3"};
     const char *c = file_with(
-        "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
-                  "form: {pretension_N: 10, prestress: exact, residual_tolerance: 1e-12}\n"
-                  "coupling: {tof_m: 1e-12}\n"
-                  "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay, longeron: {diameter_m: 0.03, "
-                  "wall_m: 0.001}}\n"
-                  "optimize:\n  method: lm\n  variables: [{set: all, vary: force_density, bounds: [0.5, null]}]\n"
-                  "  objective: [{figure: evenness, set: front}]\n"
-                  "requirements: [{figure: psi, at_most: 1}]\n");
+        "c.yaml", DISH "form: {pretension_N: 10, prestress: exact, residual_tolerance: 1e-12}\n"
+                       "coupling: {tof_m: 1e-12}\n"
+                       "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay, longeron: {diameter_m: 0.03, "
+                       "wall_m: 0.001}}\n"
+                       "optimize:\n  method: lm\n  variables: [{set: all, vary: force_density, bounds: [0.5, null]}]\n"
+                       "  objective: [{figure: evenness, set: front}]\n"
+                       "requirements: [{figure: psi, at_most: 1}]\n");
     const char *out = temp("r.h5"), *rings = _i % 2 ? "scene.paraboloid.rings=4" : "scene.paraboloid.rings=8";
     const char *bound = keep(formatted("requirements.0.at_most=%s", most[_i / 2]));
     HIFDM(0, "run", c, "-o", out, "--set", bound, "--set", rings);
@@ -415,12 +413,11 @@ END_TEST
 START_TEST(auto_starts_again_from_outside_the_limits)
 {
     const char *c = file_with(
-        "c.yaml", "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
-                  "form: {pretension_N: 10, prestress: exact}\n"
-                  "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay, longeron: {diameter_m: 0.03, "
-                  "wall_m: 0.001}}\n"
-                  "optimize:\n  method: auto\n  variables: [{set: all, vary: force_density, range: 50 %}]\n"
-                  "  limits: [{figure: deflection, bounds: [0, 0.0003]}]\n");
+        "c.yaml", DISH "form: {pretension_N: 10, prestress: exact}\n"
+                       "truss:\n  ring: {cells_per_bay: 2, bracing: single, held: bay, longeron: {diameter_m: 0.03, "
+                       "wall_m: 0.001}}\n"
+                       "optimize:\n  method: auto\n  variables: [{set: all, vary: force_density, range: 50 %}]\n"
+                       "  limits: [{figure: deflection, bounds: [0, 0.0003]}]\n");
     const char *out = temp("r.h5"), *seed = keep(formatted("%d", _i + 1));
     HIFDM(0, "run", c, "-o", out, "--quiet", "--seed", seed);
     EXPECT(out, "--", "a['refine'].attrs['psi_m'] < 1e-8", "a['optima/refine/count'][0] >= 1");

@@ -38,7 +38,6 @@ START_TEST(nets_are_held)
 }
 END_TEST
 
-#define DISH "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4, rear_distance_m: 1.8}}\n"
 #define DISH_ALONE "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 4}}\n"
 #define QUAD_DISH                                                                                                      \
     "scene: {paraboloid: {aperture_m: 6, focal_length_m: 3, rings: 5, rear_distance_m: 1.8, grid: quad}}\n"
